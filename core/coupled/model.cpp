@@ -10,6 +10,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
+#include "skein/base/contains.hpp"
 #include "skein/planning/arrival.hpp"
 #include "skein/planning/dubins.hpp"
 
@@ -30,12 +31,8 @@ struct Way {
   int turn = kCounterClockwise;
 };
 
-bool has(const std::vector<SiteId>& sites, SiteId id) {
-  return std::find(sites.begin(), sites.end(), id) != sites.end();
-}
-
 bool is_service(const CoupledProblem& problem, const TaskId& id) {
-  return id.kind == TaskKind::survey && has(problem.service_sites, id.site);
+  return id.kind == TaskKind::survey && contains(problem.service_sites, id.site);
 }
 
 /// Every vehicle does, so that headings are all one.
@@ -395,7 +392,7 @@ Result<Model> Model::make(const CoupledProblem& problem) {
     ways.insert(ways.end(), its_ways.begin(), its_ways.end());
     SiteTasks& tasks = model.sites[at(made.site)];
     tasks.assess_wait_s = to_seconds(site->assess_wait);
-    tasks.optional = has(problem.optional_sites, id.site);
+    tasks.optional = contains(problem.optional_sites, id.site);
     ++tasks.tasks;
     model.any_optional = model.any_optional || tasks.optional;
     if (id.kind == TaskKind::survey) tasks.survey = task;

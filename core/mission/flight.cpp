@@ -88,6 +88,12 @@ bool append_within(std::size_t pieces_max, Path& path, const Path& next) {
   return path.segments.size() + next.segments.size() <= pieces_max && path.append(next);
 }
 
+bool is_clear_orbit(const Pose2& from, double curvature_per_m, const std::vector<Hazard>& hazards) {
+  Path orbit{from, {}};
+  return orbit.append(Segment{curvature_per_m, kTwoPi / std::abs(curvature_per_m)}) &&
+         planning::is_clear(orbit, hazards);
+}
+
 }  // namespace
 
 Flight::Flight(const VehicleSpec& vehicle, planning::AvoidanceParams avoidance,
@@ -456,14 +462,6 @@ std::size_t Flight::pieces_after(Instant at, Instant now) const {
   const auto before = old.piece(old.distance_at(now), old.distance_at(at));
   return before ? kPathSegmentsMax - before->segments.size() : 0;
 }
-
-namespace {
-bool is_clear_orbit(const Pose2& from, double curvature_per_m, const std::vector<Hazard>& hazards) {
-  Path orbit{from, {}};
-  return orbit.append(Segment{curvature_per_m, kTwoPi / std::abs(curvature_per_m)}) &&
-         planning::is_clear(orbit, hazards);
-}
-}  // namespace
 
 Flight::Followed Flight::follow(Instant at, const std::vector<Vec2>& waypoints,
                                 const std::vector<Hazard>& hazards, double range_m, Instant now) {

@@ -211,15 +211,17 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
     if (auto inside = within_fence(planned->change); !inside) return inside.error();
     return FormationPreview{order, std::move(*planned), std::move(lost), std::nullopt};
   }
-  std::optional<VehicleId> who;
   auto room = formation::make_room(request, [&](const Transfer& way) {
-    who = way.vehicle;
     // Those that stand on the ground are put further apart.
     if (way.from.z() < std::min(kSidewaysAbove_m, config_.rally.centre.z())) return false;
     const Change alone{.movers = {{way.vehicle, {way.from, way.to}, false}}};
     return may_be_flown({way}).ok() && within_fence(alone).ok();
   });
   if (!room) return planned.error();
+  const auto makes_room = std::ranges::find_if(
+      room->change.movers,
+      [](const formation::Mover& mover) { return mover.points.front() != mover.points.back(); });
+  const VehicleId who = makes_room->vehicle;
   return FormationPreview{order, std::move(*room), std::move(lost), who};
 }
 

@@ -128,6 +128,16 @@ class Team {
   std::vector<Vehicle> vehicles_;
 };
 
+/// Abreast, 4 m apart.
+FormationOrder line_around(const Vec3& centre) {
+  FormationOrder order;
+  order.kind = OrderKind::form;
+  order.shape.kind = formation::ShapeKind::line_abreast;
+  order.shape.spacing_m = 4.0;
+  order.shape.centre = centre;
+  return order;
+}
+
 TEST(FormationGround, SendsNobodyAboveTheCeilingOrBelowTheGround) {
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}};
   ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
@@ -223,12 +233,8 @@ TEST(FormationGround, APlaceWhereASilentVehicleIsStaysEmpty) {
   ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
   team.lose(1);
   ASSERT_TRUE(team.until([&] { return team.ground().members().at({2}).lost; }));
-  FormationOrder order;
-  order.kind = OrderKind::form;
-  order.shape.kind = formation::ShapeKind::line_abreast;
-  order.shape.spacing_m = 4.0;
-  order.shape.centre = team.position(1);  // two places would be 2 m beside it
-  const auto given = team.command(order);
+  // Two places would be 2 m beside it.
+  const auto given = team.command(line_around(team.position(1)));
   ASSERT_TRUE(given.ok()) << given.error().message;
   ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
   for (const std::size_t index : {0U, 2U}) {
@@ -300,12 +306,8 @@ TEST(FormationGround, ANewProcessThatRecallsKnowsWhereASilentVehicleMayBe) {
     for (int i = 0; i < 100; ++i) team.step();
     team.start_ground_anew(recalls);
     for (int i = 0; i < 100; ++i) team.step();
-    FormationOrder order;
-    order.kind = OrderKind::form;
-    order.shape.kind = formation::ShapeKind::line_abreast;
-    order.shape.spacing_m = 4.0;
-    order.shape.centre = team.position(1);  // two places would be 2 m beside it
-    const auto given = team.command(order);
+    // Two places would be 2 m beside it.
+    const auto given = team.command(line_around(team.position(1)));
     if (!recalls) {
       ASSERT_FALSE(given.ok());
       EXPECT_THAT(given.error().message, HasSubstr("vehicle 2 was not heard"));

@@ -18,29 +18,13 @@ std::vector<VehicleId> having(const SiteReports::Team& team, Role role) {
   return some;
 }
 
-void SiteReports::on_event(const mission::MissionEvent& event) {
-  if (event.kind() == mission::EventKind::site_done) done_.insert(event.task.site);
-  // Whoever announces, bids or declines has heard of the site.
-  if (event.vehicle != kGroundStation) knowing_[event.task.site].insert(event.vehicle);
-}
-
-void SiteReports::on_program_end(VehicleId vehicle) {
-  std::vector<Site> hidden = sensors_.hidden();
-  for (const Site& site : sites_) {
-    auto& knowing = knowing_[site.id];
-    const bool forgets = knowing.erase(vehicle) > 0 && knowing.empty();
-    if (forgets && !done_.contains(site.id)) hidden.push_back(site);
-  }
-  sensors_ = SurveySensors{hidden, vehicles_};
-}
-
 std::vector<mission::SiteReport> SiteReports::look(const Team& team) {
   std::map<VehicleId, Vec2> positions;
   for (const auto& [id, telemetry] : team) {
     positions.emplace(id, telemetry.state.position().horizontal());
   }
   auto reports = sensors_.update(positions);
-  for (const auto& report : reports) knowing_[report.site.id].insert(report.finder);
+  for (const auto& report : reports) known_.on_told(report.site.id, report.finder);
   return reports;
 }
 
@@ -51,8 +35,7 @@ std::vector<mission::SiteReport> SiteReports::report_unattended(const Team& team
     return at != team.end() && !is_barred(at->second);
   };
   for (const Site& site : sites_) {
-    const auto& knowing = knowing_[site.id];
-    if (done_.contains(site.id) || std::ranges::any_of(knowing, attends)) continue;
+    if (known_.done(site.id) || std::ranges::any_of(known_.knowing(site.id), attends)) continue;
     const VehicleSpec* nearest = nullptr;
     double least_m = 0.0;
     for (const VehicleSpec& vehicle : vehicles_) {
@@ -65,7 +48,7 @@ std::vector<mission::SiteReport> SiteReports::report_unattended(const Team& team
     }
     if (nearest != nullptr) reports.push_back({nearest->id, site});
   }
-  for (const auto& report : reports) knowing_[report.site.id].insert(report.finder);
+  for (const auto& report : reports) known_.on_told(report.site.id, report.finder);
   return reports;
 }
 

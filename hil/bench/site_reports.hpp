@@ -2,11 +2,11 @@
 #pragma once
 
 #include <map>
-#include <set>
 #include <vector>
 
 #include "skein/configuration/scenario.hpp"
 #include "skein/hil/fault.hpp"
+#include "skein/hil/known_sites.hpp"
 #include "skein/hil/survey_sensors.hpp"
 #include "skein/mission/messages.hpp"
 
@@ -25,9 +25,9 @@ class SiteReports {
   explicit SiteReports(const configuration::Scenario& scenario)
       : sites_{scenario.sites}, vehicles_{specs(scenario)}, sensors_{sites_, vehicles_} {}
 
-  void on_event(const mission::MissionEvent& event);
+  void on_event(const mission::MissionEvent& event) { known_.on_event(event); }
   /// A site that nobody else has heard of can be found anew.
-  void on_program_end(VehicleId vehicle);
+  void on_program_end(VehicleId vehicle) { sensors_.hide(known_.on_program_end(vehicle, sites_)); }
   [[nodiscard]] std::vector<mission::SiteReport> look(const Team& team);
   /// Of what nobody there knows who takes part, each to the nearest that can survey.
   [[nodiscard]] std::vector<mission::SiteReport> report_unattended(const Team& team);
@@ -42,8 +42,7 @@ class SiteReports {
   std::vector<Site> sites_;
   std::vector<VehicleSpec> vehicles_;
   SurveySensors sensors_;
-  std::map<SiteId, std::set<VehicleId>> knowing_;
-  std::set<SiteId> done_;
+  KnownSites known_;
 };
 
 /// Those of them that have the role.

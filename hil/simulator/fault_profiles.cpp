@@ -288,29 +288,17 @@ void mix(Draw& draw) {
   }
 }
 
-/// The names in a list with commas. Fails where such a mission does not have one.
+/// Fails where such a mission does not have one.
 Result<std::vector<std::string>> names_in(const std::string& list, MissionKind kind) {
-  std::vector<std::string> names;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    names.push_back(list.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  const auto known = fault_profiles(kind);
-  for (const std::string& name : names) {
-    if (contains(known, name)) continue;
+  return fault_names(list, fault_profiles(kind), [kind](const std::string& name) {
     const bool elsewhere = std::any_of(kProfiles.begin(), kProfiles.end(),
                                        [&](const Profile& p) { return p.name == name; });
     const bool sites = kind == MissionKind::sites;
-    std::string message = elsewhere ? "the faults '" + name + "' are of " +
-                                          (sites ? "formations, and this mission has sites"
-                                                 : "missions with sites, and this is a formation")
-                                    : "there is no fault profile '" + name + "'";
-    message += "; write one of ";
-    for (const auto& one : known) message.append(one).append(", ");
-    return Error{message + "or several with commas"};
-  }
-  return names;
+    return elsewhere ? "the faults '" + name + "' are of " +
+                           (sites ? "formations, and this mission has sites"
+                                  : "missions with sites, and this is a formation")
+                     : "there is no fault profile '" + name + "'";
+  });
 }
 
 const Profile& profile_of(const std::string& name) {
@@ -483,6 +471,24 @@ FaultParams& FaultParams::add(const FaultParams& other) {
   wind_mps = std::max(wind_mps, other.wind_mps);
   sites_together = sites_together || other.sites_together;
   return *this;
+}
+
+Result<std::vector<std::string>> fault_names(
+    const std::string& list, const std::vector<std::string_view>& known,
+    const std::function<std::string(const std::string& name)>& why_not) {
+  std::vector<std::string> names;
+  for (std::size_t begin = 0; begin <= list.size();) {
+    const std::size_t end = std::min(list.find(',', begin), list.size());
+    names.push_back(list.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  for (const std::string& name : names) {
+    if (contains(known, name)) continue;
+    std::string message = why_not(name) + "; write one of ";
+    for (const auto& one : known) message.append(one).append(", ");
+    return Error{message + "or several with commas"};
+  }
+  return names;
 }
 
 std::vector<std::string_view> fault_profiles(MissionKind kind) {

@@ -186,23 +186,11 @@ class Draw {
 };
 
 Result<std::vector<std::string>> names_in(const std::string& list) {
-  std::vector<std::string> names;
-  for (std::size_t begin = 0; begin <= list.size();) {
-    const std::size_t end = std::min(list.find(',', begin), list.size());
-    names.push_back(list.substr(begin, end - begin));
-    begin = end + 1;
-  }
-  const auto known = process_profiles();
-  for (const std::string& name : names) {
-    if (contains(known, name)) continue;
-    std::string message = contains(fault_profiles(MissionKind::sites), std::string_view{name})
-                              ? "the faults '" + name + "' are done in virtual time only"
-                              : "there is no fault profile '" + name + "' of processes";
-    message += "; write one of ";
-    for (const auto& one : known) message.append(one).append(", ");
-    return Error{message + "or several with commas"};
-  }
-  return names;
+  return fault_names(list, process_profiles(), [](const std::string& name) {
+    return contains(fault_profiles(MissionKind::sites), std::string_view{name})
+               ? "the faults '" + name + "' are done in virtual time only"
+               : "there is no fault profile '" + name + "' of processes";
+  });
 }
 
 /// What `nemesis` is with that seed.

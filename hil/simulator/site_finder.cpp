@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
+#include <set>
 #include <utility>
 
 namespace skein::hil {
@@ -30,7 +32,7 @@ SiteFinder::SiteFinder(const TeamMission& mission)
       to_report_{sites(mission, true)} {}
 
 SiteFinder::Found SiteFinder::found(std::size_t vehicle, const Site& site) {
-  knowing_[site.id].insert(specs_[vehicle].id);
+  known_.on_told(site.id, specs_[vehicle].id);
   return {vehicle, {specs_[vehicle].id, site}};
 }
 
@@ -84,9 +86,9 @@ std::vector<Site> SiteFinder::unattended(const std::vector<Aircraft>& vehicles) 
     return v != vehicles.end() && ((v->running() && !v->takes_part()) || v->battery_fell());
   };
   for (const Site& site : mission_.sites) {
-    const auto knowing = knowing_.find(site.id);
-    if (knowing == knowing_.end() || knowing->second.empty() || done_.contains(site.id)) continue;
-    if (std::all_of(knowing->second.begin(), knowing->second.end(), leaves_it)) all.push_back(site);
+    const auto knowing = known_.knowing(site.id);
+    if (knowing.empty() || known_.done(site.id)) continue;
+    if (std::ranges::all_of(knowing, leaves_it)) all.push_back(site);
   }
   return all;
 }
@@ -121,20 +123,8 @@ std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<Aircraft
   return all;
 }
 
-void SiteFinder::on_event(const mission::MissionEvent& event) {
-  if (event.kind() == mission::EventKind::site_done) done_.insert(event.task.site);
-  // Whoever announces, bids or declines has heard of the site.
-  if (event.vehicle != kGroundStation) knowing_[event.task.site].insert(event.vehicle);
-}
-
 void SiteFinder::on_agent_end(std::size_t vehicle) {
-  std::vector<Site> hidden = sensors_.hidden();
-  for (const Site& site : mission_.sites) {
-    auto& knowing = knowing_[site.id];
-    const bool forgets = knowing.erase(specs_[vehicle].id) > 0 && knowing.empty();
-    if (forgets && !done_.contains(site.id)) hidden.push_back(site);
-  }
-  sensors_ = SurveySensors{hidden, specs_};
+  sensors_.hide(known_.on_program_end(specs_[vehicle].id, mission_.sites));
 }
 
 }  // namespace skein::hil

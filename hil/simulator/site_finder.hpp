@@ -2,12 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "aircraft.hpp"
+#include "skein/hil/known_sites.hpp"
 #include "skein/hil/survey_sensors.hpp"
 #include "skein/hil/team_simulator.hpp"
 
@@ -31,7 +30,7 @@ class SiteFinder {
   /// to different ones as long as there are some.
   [[nodiscard]] std::vector<Found> report_all(const std::vector<Aircraft>& vehicles);
 
-  void on_event(const mission::MissionEvent& event);
+  void on_event(const mission::MissionEvent& event) { known_.on_event(event); }
   void on_agent_end(std::size_t vehicle);
 
  private:
@@ -42,8 +41,7 @@ class SiteFinder {
   std::vector<VehicleSpec> specs_;
   SurveySensors sensors_;
   std::vector<Site> to_report_;
-  std::map<SiteId, std::set<VehicleId>> knowing_;  ///< whose programs have heard of it
-  std::set<SiteId> done_;
+  KnownSites known_;
 };
 
 }  // namespace skein::hil

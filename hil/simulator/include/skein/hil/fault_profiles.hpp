@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,6 +25,12 @@ enum class MissionKind : std::uint8_t { sites, formation };
 /// The names of the profiles that can be drawn for such a mission, in the order of the
 /// documentation.
 [[nodiscard]] std::vector<std::string_view> fault_profiles(MissionKind kind);
+
+/// The names in a list with commas. Fails with `why_not` of the first that is not known, and those
+/// that are.
+[[nodiscard]] Result<std::vector<std::string>> fault_names(
+    const std::string& list, const std::vector<std::string_view>& known,
+    const std::function<std::string(const std::string& name)>& why_not);
 
 /// How much may go wrong in a mission with sites; counts and figures are the most that is drawn.
 /// Members of several profiles can be set together.

@@ -20,6 +20,10 @@ class SurveySensors {
   /// What is found at these positions (mission frame); a vehicle without one finds nothing.
   [[nodiscard]] std::vector<mission::SiteReport> update(const std::map<VehicleId, Vec2>& positions);
 
+  /// They can be found anew.
+  void hide(const std::vector<Site>& sites) {
+    hidden_.insert(hidden_.end(), sites.begin(), sites.end());
+  }
   /// The sites that nobody has found yet.
   [[nodiscard]] const std::vector<Site>& hidden() const { return hidden_; }
 
