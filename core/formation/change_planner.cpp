@@ -96,6 +96,7 @@ class Planner {
   }
   [[nodiscard]] bool clear_of_keep_outs(const Change& change, std::size_t vehicle) const;
   [[nodiscard]] bool rests_too_near(std::size_t vehicle) const;
+  [[nodiscard]] bool is_outside(const Vec3& place) const;
   [[nodiscard]] bool leads_clear(const Transfer& way, std::size_t vehicle) const;
   [[nodiscard]] Change straight() const;
   [[nodiscard]] Change layers(const std::vector<int>& layer) const;
@@ -280,7 +281,9 @@ Error Planner::too_near(const Nearness& nearness) const {
                " are needed; choose a larger spacing or another place"};
 }
 
+/// To another one, or in the column below one that is lost.
 bool Planner::rests_too_near(std::size_t vehicle) const {
+  if (!is_outside(request_.transfers[vehicle].from)) return true;
   for (std::size_t other = 0; other < count_; ++other) {
     if (other != vehicle && at_start_m(vehicle, other) - kRounding_m < least_at_start_m())
       return true;
@@ -296,9 +299,17 @@ bool Planner::clear_of_keep_outs(const Change& change, std::size_t vehicle) cons
   });
 }
 
+bool Planner::is_outside(const Vec3& place) const {
+  return std::ranges::all_of(request_.keep_outs, [&](const KeepOut& keep_out) {
+    return distance_m(place, keep_out, height_factor_) >=
+           request_.separation.horizontal_m - kRounding_m;
+  });
+}
+
 /// Of who moves alone: never nearer to anybody than at its start, and at its end far enough from
 /// all.
 bool Planner::leads_clear(const Transfer& way, std::size_t vehicle) const {
+  if (!is_outside(way.to)) return false;
   const KeepOut flown{way.vehicle, way.from, way.to};
   for (std::size_t other = 0; other < count_; ++other) {
     if (other == vehicle) continue;

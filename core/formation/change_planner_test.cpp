@@ -292,5 +292,15 @@ TEST(MakeRoom, KeepsOutOfWhereASilentOneMayBe) {
   }
 }
 
+TEST(MakeRoom, LeadsOutFromBelowASilentOne) {
+  ChangeRequest below = request_of({{0, 0, 15}, {20, 0, 15}});
+  below.keep_outs = {{{9}, {1.5, 0, 20}, {1.5, 0, 0}}};
+  const auto room = make_room(below, anywhere);
+  ASSERT_TRUE(room);
+  const Vec3& end = room->change.movers[0].points.back();
+  EXPECT_GE(distance_m(end, below.keep_outs[0], 1.0), 3.0);
+  EXPECT_LT(end.x(), 0.0) << "straight away from it";
+}
+
 }  // namespace
 }  // namespace skein::formation

@@ -28,9 +28,13 @@ constexpr Duration kMessageLife = std::chrono::seconds{3};
 /// After the start of a change whoever moves in it does.
 constexpr Duration kSetOff = std::chrono::seconds{1};
 constexpr Duration kTryAgain = std::chrono::seconds{5};
+/// Who is beside its place for so long will not come to it; gusts pass.
+constexpr Duration kStaysOff = std::chrono::seconds{5};
 /// So far from its reference, a vehicle does not fly what it is told; back within half of it, it
 /// does.
 constexpr double kAstray_m = 5.0;
+/// So near to the end of its way a reference is there.
+constexpr double kLedTo_m = 0.05;
 /// Where a silent vehicle may be is looked at in such steps.
 constexpr double kLook_m = 0.5;
 /// Lower than this nobody is flown to the side, unless the rally is lower still.
@@ -238,7 +242,9 @@ std::vector<formation::KeepOut> FormationGround::keep_outs() const {
   for (const auto& [vehicle, member] : members_) {
     if (!member.lost) continue;
     for (const Vec3& place : may_be(vehicle, member)) {
-      // Whoever flies it no more comes down sooner or later.
+      // Whoever flies it no more comes down sooner or later. Who rests below it may leave that
+      // column, but not through the place.
+      all.push_back({vehicle, place, place});
       all.push_back({vehicle, place, {place.x(), place.y(), 0.0}});
     }
   }
@@ -342,6 +348,8 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   withdrawn_ = false;
   stuck_since_.reset();
   near_since_.reset();
+  off_since_.reset();
+  told_off_ = false;
   held_since_.reset();
   rest_since_.reset();
   messages_.push(*change_);
@@ -522,23 +530,46 @@ void FormationGround::judge_places(Instant now) {
   if (makes_room_) return;
   std::optional<Instant> first;
   std::optional<Instant> last;
+  std::vector<VehicleId> off;
   for (const auto& mover : change_->movers) {
     const auto found = members_.find(mover.vehicle);
     if (found == members_.end() || found->second.lost) continue;
     const Member& member = found->second;
     if (!member.arrived_at || member.place_error_m > config_.place_tolerance_m) {
-      if (!held_since_) near_since_.reset();
-      return;
+      off.push_back(mover.vehicle);
+      continue;
     }
     first = std::min(first.value_or(*member.arrived_at), *member.arrived_at);
     last = std::max(last.value_or(*member.arrived_at), *member.arrived_at);
   }
-  if (!first || held_since_) return;
+  if (held_since_ || (off.empty() && !first)) return;
+  if (!off.empty() && !stay_off(off, now)) {
+    near_since_.reset();
+    return;
+  }
   if (!near_since_) near_since_ = now;
   if (now - *near_since_ < config_.settle) return;
   held_since_ = now;
   if (correcting_) return;
-  report(event::FormationHeld{*last - *first}, now);
+  report(event::FormationHeld{first ? *last - *first : Duration{}}, now);
+}
+
+/// They were led to their ends and are beside them: told once. True where that is all there will
+/// be, since they stand.
+bool FormationGround::stay_off(const std::vector<VehicleId>& who, Instant now) {
+  const bool led = std::ranges::all_of(who, [this](VehicleId vehicle) {
+    const FormationStatus& status = members_.at(vehicle).status;
+    return status.at_rest && status.progress.change == number_ &&
+           (status.reference_m - *goal_of(vehicle)).norm() < kLedTo_m;
+  });
+  if (!led) {
+    off_since_.reset();
+    return false;
+  }
+  if (!off_since_) off_since_ = now;
+  if (now - *off_since_ < kStaysOff) return false;
+  if (!std::exchange(told_off_, true)) warn(FormationNews::off_place, who, now);
+  return order_->kind == OrderKind::land;
 }
 
 void FormationGround::correct_drift(Instant now) {

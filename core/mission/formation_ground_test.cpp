@@ -242,6 +242,46 @@ TEST(FormationGround, APlaceWhereASilentVehicleIsStaysEmpty) {
   }
 }
 
+TEST(FormationGround, NobodyIsLedUpThroughWhereASilentVehicleIs) {
+  Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 3; }));
+  ASSERT_TRUE(team.take_off());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  team.lose(1);
+  ASSERT_TRUE(team.until([&] { return team.ground().members().at({2}).lost; }));
+  const Vec3 lost = team.position(1);
+  // One is below it after a new start, nearer to the side than they may come to each other.
+  team.start_anew(0, lost + Vec3{1.7, 0.0, -4.0});
+  for (int i = 0; i < 200; ++i) team.step();
+  double least_m = 1e9;
+  for (const double height_m : {10.0, 15.0, 25.0}) {
+    const auto given = team.command(line_around({0.0, 0.0, height_m}));
+    for (int i = 0; i < 1200; ++i) {
+      team.step();
+      least_m = std::min(least_m, (team.position(0) - lost).norm());
+    }
+  }
+  EXPECT_GE(least_m, 3.0 - 1e-6);
+}
+
+TEST(FormationGround, WhoStandsBesideItsPlaceIsToldAndHasLanded) {
+  Team team{{{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
+  ASSERT_TRUE(team.take_off());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  FormationOrder land;
+  land.kind = OrderKind::land;
+  ASSERT_TRUE(team.command(land).ok());
+  team.push_aside(1, {1.0, 0.0, 0.0});
+  ASSERT_TRUE(team.until([&] { return team.warnings() > 0; }));
+  const auto warning = std::find_if(team.events.begin(), team.events.end(),
+                                    [](const auto& event) { return is_warning(event.kind()); });
+  EXPECT_EQ(warning->body,
+            EventBody{(event::FormationWarning{event::FormationNews::off_place, {{2}}})});
+  EXPECT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  EXPECT_EQ(team.warnings(), 1U);
+}
+
 TEST(FormationGround, CorrectsASteadyDriftOnceAndKeepsThePlaces) {
   Team team{{{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}};
   ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));

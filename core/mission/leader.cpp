@@ -133,24 +133,31 @@ void Leader::meet_rival(SiteId site, const coalition::Round& rival, bool stands,
 }
 
 /// Two leaders announce at once: the one with the smaller reward, then the higher id, bids for the
-/// other and keeps its own site for later (Wang 2022, protocol step 2).
+/// other and keeps its own site for later (Wang 2022, protocol step 2). So does one whose rounds
+/// have been in vain, whatever the reward, where it can do some of the other's work: those
+/// that it waits for may lead in vain, and wait for it.
 bool Leader::yields_to(const coalition::Announcement& other, Instant now) const {
-  if (!leads_other(other.round.coalition)) return false;
-  if (initiator_->state() != Initiator::State::announcing || !initiator_->owned().empty()) {
-    return false;
-  }
+  if (!leads_other(other.round.coalition) || !initiator_->owned().empty()) return false;
+  if (!in_vain() && initiator_->state() != Initiator::State::announcing) return false;
   if (now >= other.bids_until + ownship_.config().protocol.clock_guard) return false;
   if (!makes_sense(other, now)) return false;  // its own member does not bid for that either
   const auto& own = initiator_->announcement();
   if (other.site.id == own.site.id) return false;  // a rival: Initiator::on_rival
+  const auto can = [this](const TaskId& task) { return ownship_.can(task); };
+  if (in_vain()) return std::ranges::any_of(other.tasks, can);
   return own.reward < other.reward ||
          (own.reward == other.reward && ownship_.spec().id > other.round.coalition.leader);
 }
 
-std::optional<Site> Leader::put_off(Instant now) {
+/// Nor could all that can be had do less.
+bool Leader::in_vain() const {
+  return monitoring() && initiator_->owned().empty() && rounds_failed_ > kRoundsForAll;
+}
+
+std::optional<Site> Leader::put_off(Reason why, Instant now) {
   if (!leading()) return std::nullopt;
   Site site = initiator_->site();
-  give_up({Reason::held_by_operator}, now);
+  give_up({why}, now);
   return site;
 }
 

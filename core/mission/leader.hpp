@@ -67,8 +67,11 @@ class Leader {
   /// Says again what has to be: farewells, and the request that awaits its decision.
   void repeat(Instant now);
 
-  /// Gives the site up for now, by the operator's order: it is to be led later.
-  [[nodiscard]] std::optional<Site> put_off(Instant now);
+  /// Nobody owns a task of its site, and its last rounds found nobody for any: it may do better
+  /// elsewhere meanwhile.
+  [[nodiscard]] bool in_vain() const;
+  /// Gives the site up for now: it is to be led later.
+  [[nodiscard]] std::optional<Site> put_off(coalition::Reason why, Instant now);
   /// For one that cannot go on: gives the site up as soon as nobody flies what it awarded. Then its
   /// silence tells the others to take the site up.
   void hand_on(coalition::Reason why, Instant now);

@@ -289,6 +289,39 @@ TEST(Leader, YieldsToALargerRewardAndLeadsItsSiteLater) {
   EXPECT_EQ(l.reported(EventKind::conflict_yielded), 1);
 }
 
+TEST(Leader, WhoseRoundsAreInVainYieldsToWhoseWorkItCanDo) {
+  Leading l;
+  const auto fail_a_round = [&] {
+    const auto call = l.said<coalition::Announcement>();
+    ASSERT_TRUE(call);
+    l.wait_until(to_seconds(call->bids_until));  // nobody bids
+    const auto request = l.outbox.planning_requests.pop();
+    ASSERT_TRUE(request);
+    EXPECT_TRUE(l.leader.on_planning_result({request->round, Error{"too few"}}, l.now));
+    l.work();
+  };
+  const auto call_of_another = [&l] {
+    coalition::Announcement other;
+    other.round = {{{7}, {1}, 1}, 1};
+    other.site = test_site(2);
+    other.tasks = tasks_after_survey(other.site);
+    other.announced_at = l.now;
+    other.bids_until = l.now + std::chrono::seconds{1};
+    other.formed_at = l.now + std::chrono::seconds{2};
+    other.reward = 0.5;
+    return coalition::Message{other};
+  };
+  for (int round = 1; round <= 4; ++round) {
+    EXPECT_FALSE(l.leader.on_message(call_of_another(), l.now)) << "it may find somebody yet";
+    ASSERT_NO_FATAL_FAILURE(fail_a_round());
+    while (round < 4 && l.leader.monitoring()) l.wait_until(to_seconds(l.leader.next_timeout()));
+  }
+  const auto own = l.leader.on_message(call_of_another(), l.now);
+  ASSERT_TRUE(own);
+  EXPECT_EQ(own->id, SiteId{1});
+  EXPECT_EQ(l.leader.state(), State::idle);
+}
+
 TEST(Leader, HandsOnOnlyWhatNobodyFlies) {
   Leading l;
   l.form();

@@ -55,7 +55,7 @@ bool Scout::withdraw(SiteId site, Instant now) {
   known_.insert(site);
   sites_.forget(site);
   std::erase_if(found_, [site](const Found& f) { return f.site.id == site; });
-  std::erase_if(surveyed_, [site](const Site& s) { return s.id == site; });
+  std::erase_if(surveyed_, [site](const Surveyed& s) { return s.site.id == site; });
   if (flying() && site_.id == site) {
     fire(Event::called_off);
     ownship_.search(now);
@@ -65,7 +65,7 @@ bool Scout::withdraw(SiteId site, Instant now) {
 
 void Scout::on_message(const coalition::Message& message, Instant now) {
   const auto is_led = [this](SiteId site) {
-    std::erase_if(surveyed_, [site](const Site& s) { return s.id == site; });
+    std::erase_if(surveyed_, [site](const Surveyed& s) { return s.site.id == site; });
   };
   // Who says that it was heard later than now would never be lost.
   const Instant latest = now + ownship_.config().protocol.clock_guard;
@@ -86,14 +86,28 @@ void Scout::on_message(const coalition::Message& message, Instant now) {
 
 std::optional<SurveyedSite> Scout::take_up(Instant now) {
   SKEIN_ASSERT(!flying());
-  if (!surveyed_.empty()) {
-    const Site site = surveyed_.front();
-    surveyed_.erase(surveyed_.begin());
-    return SurveyedSite{site, sites_.over(site.id)};
-  }
+  if (!surveyed_.empty() && !surveyed_.front().in_vain) return lead_next();
   take_up_survey(now);
-  if (!flying()) take_up_relief(now);
+  if (flying()) return std::nullopt;
+  if (!surveyed_.empty()) return lead_next();
+  take_up_relief(now);
   return std::nullopt;
+}
+
+/// Precondition: there is one.
+SurveyedSite Scout::lead_next() {
+  const Site site = surveyed_.front().site;
+  surveyed_.erase(surveyed_.begin());
+  return {site, sites_.over(site.id)};
+}
+
+void Scout::put_off(const Site& site) {
+  surveyed_.insert(std::ranges::find_if(surveyed_, &Surveyed::in_vain), {site});
+}
+
+bool Scout::has_another_site() const {
+  const auto can_be_surveyed = [](const Found& found) { return !found.told; };
+  return !surveyed_.empty() || std::ranges::any_of(found_, can_be_surveyed);
 }
 
 Instant Scout::takes_up_at() const {

@@ -60,7 +60,11 @@ class Scout {
   /// Nobody shall lead it any more.
   void close(SiteId site) { sites_.close(site); }
   /// A surveyed site that was led here shall be led later.
-  void put_off(const Site& site) { surveyed_.push_back(site); }
+  void put_off(const Site& site);
+  /// So shall one that was led in vain, after all else that waits here.
+  void put_last(const Site& site) { surveyed_.push_back({site, true}); }
+  /// Does anything wait here that can be surveyed or led?
+  [[nodiscard]] bool has_another_site() const;
 
   /// For a vehicle that has nothing else to do: a site to lead now; or nothing, and where there is
   /// one to survey or to relieve it is on its way there.
@@ -88,7 +92,12 @@ class Scout {
     Site site;
     bool told = false;  ///< that it cannot be surveyed now
   };
+  struct Surveyed {
+    Site site;
+    bool in_vain = false;  ///< it was led
+  };
   void fire(Event event);
+  [[nodiscard]] SurveyedSite lead_next();
   void report_detected(const Site& site, Instant now);
   void take_up_survey(Instant now);
   void take_up_relief(Instant now);
@@ -108,9 +117,10 @@ class Scout {
   std::set<SiteId> known_;      ///< found or announced by anybody
   std::set<SiteId> withdrawn_;  ///< by the operator
   std::vector<Found> found_;    ///< found here, waiting to be surveyed
-  std::vector<Site> surveyed_;  ///< led here before, waiting to be led again
-  SiteBook sites_;              ///< as others lead them
-  Instant survey_again_{};      ///< when a survey is tried next
+  /// Led here before, waiting to be led again; last those that were led in vain.
+  std::vector<Surveyed> surveyed_;
+  SiteBook sites_;          ///< as others lead them
+  Instant survey_again_{};  ///< when a survey is tried next
   Instant relief_again_{};
   std::uint64_t dropped_ = 0;
 };

@@ -193,6 +193,24 @@ TEST(Scout, GoesBackToItsSearchWhenTheLostLeaderIsHeard) {
   EXPECT_TRUE(s.ownship.flight().searching());
 }
 
+TEST(Scout, WhatWasLedInVainComesAfterAllElse) {
+  Scouting s;
+  EXPECT_FALSE(s.scout.has_another_site());
+  s.scout.put_last(test_site(1));
+  s.scout.put_off(test_site(2));
+  s.find(test_site(3));
+  EXPECT_TRUE(s.scout.has_another_site());
+  const auto first = s.scout.take_up(s.now);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->site.id, SiteId{2});
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  ASSERT_EQ(s.scout.state(), State::to_survey);
+  ASSERT_TRUE(s.fly_until(300.0));
+  const auto last = s.scout.take_up(s.now);
+  ASSERT_TRUE(last);
+  EXPECT_EQ(last->site.id, SiteId{1});
+}
+
 TEST(Scout, ASiteThatWasPutOffIsLedLaterUnlessOthersDo) {
   Scouting s;
   s.scout.put_off(test_site(1));

@@ -24,6 +24,8 @@ constexpr double kLevel_m = 0.5;
 constexpr double kBegun_m = 1.0;
 /// A climb is begun so much later than it is asked for.
 constexpr double kClimbLag_s = 3.0;
+/// When they are closest is known to so much.
+constexpr double kAround_s = 2.0;
 constexpr Duration kChosenFor = std::chrono::seconds{2};
 /// While something is wrong, others are looked at that are as far away in height.
 constexpr double kOthersWithin_m = 40.0;
@@ -73,9 +75,9 @@ void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& o
   const double apart_m = other.state.z_m - own.z_m;
   const auto found = known_.find(other.vehicle);
   if (found == known_.end()) {
-    const bool near =
-        on_the_way(own, other.state) ||
-        (any_conflict() ? std::abs(apart_m) < kOthersWithin_m : concerns(params_, apart_m));
+    const bool near = on_the_way(own, other.state) ||
+                      (any_conflict() ? std::abs(apart_m) < kOthersWithin_m
+                                      : concerns(params_, apart_m, other.activity));
     if (!near || known_.size() >= kVehiclesMax) return;
   }
   Other& known = known_[other.vehicle];
@@ -139,7 +141,7 @@ void SeparationWatch::step(const Self& self, Instant now) {
     if (now - other.heard > kForgotten) return true;
     const double apart_m = other.state.z_m - self.state.z_m;
     const bool was_told = other.told_at != Instant::min() && now - other.told_at < kToldEvery;
-    return !wrong && !was_told && !concerns(params_, apart_m) &&
+    return !wrong && !was_told && !concerns(params_, apart_m, other.activity) &&
            !on_the_way(self.state, other.state);
   });
   const bool yields =
@@ -234,7 +236,12 @@ SeparationWatch::Approach SeparationWatch::approach(const Self& self, const Othe
         std::clamp(-apart.dot(closing) / speed2, 0.0, to_seconds(params_.separation_look_ahead));
   }
   a.horizontal_m = (apart + a.in_s * closing).norm();
-  a.vertical_m = std::abs(other.state.z_m - self.state.z_m);
+  // Others stay at their height, or give way; who lands comes down all the while.
+  const double sinks_mps =
+      other.activity == Activity::landing ? std::max(0.0, -other.climb_mps) : 0.0;
+  a.height_m = other.state.z_m - sinks_mps * (age_s + a.in_s);
+  a.around_m = sinks_mps * kAround_s;
+  a.vertical_m = std::max(0.0, std::abs(a.height_m - self.state.z_m) - a.around_m);
   a.margin_m = kMargin_mps * (age_s + a.in_s);
   a.height_margin_m = std::min(kHeightMarginMost_m, kHeightMargin_mps * age_s);
   return a;
@@ -335,7 +342,7 @@ void SeparationWatch::tell(VehicleId id, Other& other, const Approach& a, Instan
 /// Away from the other one; through its height only where there is no other way, and time for it.
 std::optional<double> SeparationWatch::height_for(VehicleId id, const Other& other,
                                                   const Self& self, Instant now) const {
-  const double above_m = self.state.z_m - other.state.z_m;
+  const double above_m = self.state.z_m - approach(self, other, now).height_m;
   const bool level = std::abs(above_m) < kLevel_m;
   const bool up = level ? self_ > id : above_m > 0.0;
   if (const auto away = free_height(other, up, self, now)) return away;
@@ -350,13 +357,15 @@ std::optional<double> SeparationWatch::free_height(const Other& other, bool up, 
                                                    Instant now) const {
   const double side = up ? 1.0 : -1.0;
   const double room_m = params_.separation_vertical_m + kRoom_m;
-  double height_m = other.state.z_m + side * room_m;
+  const Approach a = approach(self, other, now);
+  double height_m = a.height_m + side * (room_m + a.around_m);
   for (bool moved = true; moved;) {
     moved = false;
     for (const auto& [id, third] : known_) {
-      const bool bars = std::abs(third.state.z_m - height_m) < params_.separation_vertical_m;
-      if (!bars || !passes_near(self, third, now)) continue;
-      height_m = third.state.z_m + side * room_m;
+      const Approach its = approach(self, third, now);
+      const double apart_m = params_.separation_vertical_m + its.around_m;
+      if (std::abs(its.height_m - height_m) >= apart_m || !passes_near(self, third, now)) continue;
+      height_m = its.height_m + side * (room_m + its.around_m);
       moved = true;
     }
   }
@@ -369,7 +378,8 @@ std::optional<double> SeparationWatch::free_height(const Other& other, bool up, 
 void SeparationWatch::keep_free(const Self& self, Instant now) {
   if (now - chosen_at_ < kChosenFor || !target_) return;
   const auto bars = [&](const Other& other) {
-    return std::abs(other.state.z_m - *target_) < params_.separation_vertical_m &&
+    const Approach a = approach(self, other, now);
+    return std::abs(a.height_m - *target_) < params_.separation_vertical_m + a.around_m &&
            passes_near(self, other, now);
   };
   if (std::ranges::none_of(known_, [&](const auto& entry) { return bars(entry.second); })) return;

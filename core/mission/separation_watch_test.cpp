@@ -45,7 +45,7 @@ class Flyer {
     state.x_m += kSeconds * state.velocity_mps().x();
     state.y_m += kSeconds * state.velocity_mps().y();
     const double wanted_m = layer_m_ + (can_change_height ? height_offset_m(plan_, now) : 0.0);
-    state.z_m += (wanted_m - state.z_m) * kSeconds / 3.0;
+    state.z_m += sinks_mps > 0.0 ? -sinks_mps * kSeconds : (wanted_m - state.z_m) * kSeconds / 3.0;
   }
   void decide(Instant now) {
     if (watch.watches()) watch.step({state, activity}, now);
@@ -72,6 +72,7 @@ class Flyer {
   VehicleState state;
   Activity activity = Activity::searching;
   bool can_change_height = true;
+  double sinks_mps = 0.0;  ///< its autopilot leads it down
   bool speaks = true;
   bool hears = true;
   std::vector<event::SeparationWarning> warnings;
@@ -186,6 +187,18 @@ TEST(SeparationWatch, InLayersThatAreApartNothingIsKnownOfOthers) {
       ASSERT_FALSE(sky.flyers[0].watch.watches() || sky.flyers[1].watch.watches()) << apart_m;
     }
     EXPECT_LT(sky.least.vertical_m, 1e8) << "they did pass each other";
+  }
+}
+
+TEST(SeparationWatch, WhoIsBelowOneThatLandsGivesWayInTime) {
+  // It would be at the other's height where they meet, 5 m below, or has come far below by then.
+  for (const double above_m : {40.0, 35.0, 10.0}) {
+    Sky sky = head_on(1, 2, kLayer_m + above_m);
+    sky.flyers[1].activity = Activity::landing;
+    sky.flyers[1].sinks_mps = 2.0;
+    sky.fly(30.0);
+    EXPECT_EQ(sky.flyers[0].gave_way, above_m > 20.0);
+    EXPECT_GE(sky.least.vertical_m, 5.0) << above_m;
   }
 }
 

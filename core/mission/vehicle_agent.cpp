@@ -185,6 +185,10 @@ void VehicleAgent::Impl::idle(Instant now) {
     if (ownship_.comes_home()) ownship_.come_home(now);
     return;
   }
+  if (failsafe_.in(Failsafe::Action::none) && leader_.in_vain() && scout_.has_another_site()) {
+    if (const auto site = leader_.put_off(coalition::Reason::yields, now)) scout_.put_last(*site);
+    say_last_words(now);
+  }
   if (leader_.leading()) return;  // it keeps circling its site
   if (failsafe_.in(Failsafe::Action::none)) {
     if (const auto site = scout_.take_up(now)) leader_.lead(*site, now);

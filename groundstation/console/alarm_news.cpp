@@ -187,6 +187,7 @@ struct AlarmNews::Reader {
       case FormationNews::not_begun:
       case FormationNews::drift_corrected:
       case FormationNews::awaited:
+      case FormationNews::off_place:
       case FormationNews::count:
         return tell();
     }

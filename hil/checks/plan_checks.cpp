@@ -139,10 +139,13 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
       const Pose2 here = plan_pose(plan.plan, plan_distance_m(plan.plan, plan.since));
       Pose2 before = here;
       const char* what = "the plan before it";
-      // Where the vehicle's program has ended, what flies it starts from where it is.
-      const bool program_ended =
+      // Where the vehicle's program has ended, what flies it starts from where it is; so does its
+      // new program: the wind has carried it off the orbit meanwhile.
+      const bool other_program =
           std::any_of(record.agent_ends.begin(), record.agent_ends.end(), [&](const AgentEnd& end) {
-            return end.vehicle == recorded.vehicle && end.at == plan.since;
+            const bool anew = i > 0 && end.restarted_at && plan.since >= *end.restarted_at &&
+                              recorded.plans[i - 1].since < *end.restarted_at;
+            return end.vehicle == recorded.vehicle && (end.at == plan.since || anew);
           });
       // And who was left alone, from where that has brought it, where it finds that out.
       const auto from_old = [&] {
@@ -154,7 +157,7 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
           was_left_alone(record, recorded.vehicle, recorded.plans[i - 1].since, plan.since) &&
           ((here.position() - from_old().position()).norm() > limits.plan_jump_m ||
            std::abs(wrap_pi(here.heading_rad - from_old().heading_rad)) > limits.plan_jump_rad);
-      if (i > 0 && !program_ended && !taken_up) {
+      if (i > 0 && !other_program && !taken_up) {
         const PlanRecord& old = recorded.plans[i - 1];
         before = plan_pose(old.plan, plan_distance_m(old.plan, plan.since));
         if (plan.number <= old.number || plan.since < old.since) {

@@ -139,6 +139,9 @@ TEST(PlanChecks, WhatFliesOnWithoutItsProgramStartsFromTheVehicle) {
   EXPECT_FALSE(check_continuity(record, {}).held());
   record.agent_ends = {{kFromWest, since, {}}};
   EXPECT_TRUE(check_continuity(record, {}).held());
+  // So does what its new program plans first.
+  record.agent_ends = {{kFromWest, since - std::chrono::seconds{1}, since}};
+  EXPECT_TRUE(check_continuity(record, {}).held());
   recorded.plans.back().plan.path.start.y_m += 12.0;
   EXPECT_THAT(only_sentence(check_continuity(record, {})), HasSubstr("from the vehicle"));
 }

@@ -100,11 +100,13 @@ void Aircraft::start_program(const std::vector<Hazard>& hazards, Instant now) {
   untold_.reset();
 }
 
-bool Aircraft::watches(const VehicleState& other) const {
+bool Aircraft::watches(const mission::Telemetry& other) const {
   if (!running() || what_.flies_formation) return false;
-  const double apart_m = std::max(0.0, std::abs(other.z_m - state_.z_m) - kHeightOnTheWay_m);
+  const double apart_m = other.state.z_m - state_.z_m;
+  const double above_m =
+      std::copysign(std::max(0.0, std::abs(apart_m) - kHeightOnTheWay_m), apart_m);
   return node_->agent().watches_others() ||
-         mission::SeparationWatch::concerns(mission_.protocol, apart_m);
+         mission::SeparationWatch::concerns(mission_.protocol, above_m, other.activity);
 }
 
 bool Aircraft::tell_state(Instant now) {

@@ -46,7 +46,7 @@ class Aircraft {
     if (!battery_) return;
     battery_ = SimulatedBattery{std::min(percent, battery_percent()), state_.distance_flown_m};
   }
-  [[nodiscard]] bool battery_fell() const { return battery_ && battery_->at_m > 0.0; }
+  [[nodiscard]] bool battery_fell() const { return battery_ && battery_->percent < 100.0; }
   /// A multirotor comes down where it is then; a plane orbits on.
   void sink(Instant from) {
     if (!is_plane()) sinks_from_ = from;
@@ -59,7 +59,7 @@ class Aircraft {
 
   /// Does its node go by what that other vehicle tells of where it is, now? Otherwise telemetry
   /// does no more than wake it.
-  [[nodiscard]] bool watches(const VehicleState& other) const;
+  [[nodiscard]] bool watches(const mission::Telemetry& other) const;
 
   /// The node is told the state of this moment, or, where it is quiet, not before something else
   /// comes: then nothing is to be polled, and this is false. Precondition: running().

@@ -31,6 +31,7 @@ void AirspaceJudge::step(const std::vector<SeenBody>& bodies, Instant now) {
 void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<SeenBody>& bodies,
                              Instant now) {
   if (!bodies[a].airborne || !bodies[b].airborne) return;
+  if (bodies[a].adrift && bodies[b].adrift) return;  // by nobody's doing
   const Vec3 stretch{1.0, 1.0, height_factor(limits_.separation)};
   const Vec3 begin = (before_[a].position_m - before_[b].position_m).cwiseProduct(stretch);
   const Vec3 end = (bodies[a].position_m - bodies[b].position_m).cwiseProduct(stretch);

@@ -56,6 +56,18 @@ TEST(AirspaceJudge, SeesWhoPassBetweenTwoLooks) {
   EXPECT_THAT(judged(beside).take(), IsEmpty());
 }
 
+TEST(AirspaceJudge, LeavesAloneTwoThatNobodyFlies) {
+  for (const bool both : {true, false}) {
+    AirspaceJudge judge{kLimits};
+    std::vector<SeenBody> bodies{body(1, {0, 0, 20}), body(2, {1.5, 0, 20})};
+    bodies[0].adrift = true;
+    bodies[1].adrift = both;
+    judge.step(bodies, Instant{});
+    judge.step(bodies, Instant{} + 20ms);
+    EXPECT_THAT(judge.take(), SizeIs(both ? 0 : 1));
+  }
+}
+
 TEST(AirspaceJudge, CountsHeightsByTheirOwnMinimum) {
   const auto above = [](double by_m) {
     return Seen{{0, 0, 20}, {0, 0, 20}, {0, 0, 20 + by_m}, {0, 0, 20 + by_m}};

@@ -52,6 +52,18 @@ std::set<TaskId> may_have_been_flown(const checks::RunRecord& record) {
   return tasks;
 }
 
+bool is_withdrawn(const checks::RunRecord& record, const Site& site) {
+  return std::ranges::any_of(record.ground_events, [&site](const mission::MissionEvent& event) {
+    return event.kind() == mission::EventKind::site_withdrawn && event.task.site == site.id;
+  });
+}
+
+bool is_covered(const checks::RunRecord& record, const Site& site) {
+  return std::ranges::any_of(record.hazards, [&site](const checks::KnownHazard& known) {
+    return (known.hazard.centre - site.position).norm() < known.hazard.radius_m;
+  });
+}
+
 }  // namespace
 
 std::vector<checks::Excuse> excuses(const checks::RunRecord& record,
@@ -72,16 +84,16 @@ std::vector<checks::Excuse> excuses(const checks::RunRecord& record,
     if (!done.contains(task)) excuse(task, "may have been flown by who fell silent");
   }
 
-  for (const auto& event : record.ground_events) {
-    if (event.kind() != mission::EventKind::site_withdrawn) continue;
-    for (const Site& site : record.sites) {
-      if (site.id != event.task.site) continue;
-      std::vector<TaskId> tasks = tasks_after_survey(site);
-      tasks.push_back({site.id, TaskKind::survey, 0});
-      for (const TaskId& task : tasks) {
-        if (!done.contains(task)) excuse(task, "withdrawn by the operator");
-      }
+  const auto excuse_site = [&](const Site& site, std::string_view why) {
+    std::vector<TaskId> tasks = tasks_after_survey(site);
+    tasks.push_back({site.id, TaskKind::survey, 0});
+    for (const TaskId& task : tasks) {
+      if (!done.contains(task)) excuse(task, why);
     }
+  };
+  for (const Site& site : record.sites) {
+    if (is_withdrawn(record, site)) excuse_site(site, "withdrawn by the operator");
+    if (is_covered(record, site)) excuse_site(site, "lies in a hazard");
   }
 
   std::vector<const VehicleSpec*> specs;

@@ -133,6 +133,18 @@ FaultParams slow_planner() {
   return p;
 }
 
+FaultParams stalled() {
+  FaultParams p = phase_only();
+  p.stalls = 4;
+  return p;
+}
+
+FaultParams covered_sites() {
+  FaultParams p = phase_only();
+  p.covered = 1;
+  return p;
+}
+
 // --- in the changes of a formation ---
 
 /// Keeps the draw apart from what else starts from the same seed.
@@ -247,7 +259,7 @@ struct Profile {
 };
 
 /// `mixed` draws from those above it, in this order.
-constexpr std::array<Profile, 22> kProfiles{{{"none", nullptr, no_fault},
+constexpr std::array<Profile, 24> kProfiles{{{"none", nullptr, no_fault},
                                              {"lossy", lossy},
                                              {"vehicle", nullptr, lost_vehicle},
                                              {"leader", nullptr, lost_leader},
@@ -266,6 +278,8 @@ constexpr std::array<Profile, 22> kProfiles{{{"none", nullptr, no_fault},
                                              {"orders", orders},
                                              {"clock", wrong_clock},
                                              {"taken-back", grants_taken_back},
+                                             {"stall", stalled},
+                                             {"covered", covered_sites, nullptr, true},
                                              {"battery", batteries, nullptr, true},
                                              {"wind", wind, nullptr, true},
                                              {"narrow", narrow, nullptr, true}}};
@@ -347,7 +361,9 @@ Fault draw_crash(Random& random, Duration phase, bool for_good) {
   return fault;
 }
 
-bool is_free(const Hazard& hazard, const TeamMission& mission) {
+/// But for one site: `except`.
+bool is_free(const Hazard& hazard, const TeamMission& mission,
+             const std::optional<SiteId>& except = std::nullopt) {
   double approach = 0.0;
   double circle = 0.0;
   double turn = 0.0;
@@ -358,7 +374,7 @@ bool is_free(const Hazard& hazard, const TeamMission& mission) {
   }
   const double room = hazard.radius_m + kSiteRoom_m + std::max(approach + turn, circle);
   for (const auto& site : mission.sites) {
-    if ((site.position - hazard.centre).norm() < room) return false;
+    if (site.id != except && (site.position - hazard.centre).norm() < room) return false;
   }
   for (const auto& h : mission.hazards) {
     if ((h.hazard.centre - hazard.centre).norm() < h.hazard.radius_m + hazard.radius_m + 4.0 * turn)
@@ -396,6 +412,23 @@ void draw_hazards(Random& random, TeamMission& mission, const FaultParams& param
     hazard.id = HazardId{++id};
     mission.hazards.push_back({hazard, known_from});
     ++drawn;
+  }
+}
+
+/// A site that lies in a hazard cannot be worked at any more.
+void draw_covered(Random& random, TeamMission& mission, const FaultParams& params) {
+  if (mission.sites.empty()) return;
+  std::uint16_t id = 1100;
+  for (std::size_t n = count(random, params.covered); n > 0; --n) {
+    const Site& site = mission.sites[random.index(mission.sites.size())];
+    Hazard hazard;
+    hazard.radius_m = random.uniform(20.0, 60.0);
+    const Vec2 aside = unit_vector(random.uniform(-kPi, kPi));
+    hazard.centre = site.position + random.uniform(0.0, 0.8) * hazard.radius_m * aside;
+    const Instant known_from = Instant{} + between(random, seconds{3}, params.phase);
+    if (!is_free(hazard, mission, site.id)) continue;
+    hazard.id = HazardId{++id};
+    mission.hazards.push_back({hazard, known_from});
   }
 }
 
@@ -456,12 +489,14 @@ FaultParams& FaultParams::add(const FaultParams& other) {
   crashes = std::max(crashes, other.crashes);
   restarts = std::max(restarts, other.restarts);
   joiners = std::max(joiners, other.joiners);
+  stalls = std::max(stalls, other.stalls);
   clock_offset = std::max(clock_offset, other.clock_offset);
   orders = std::max(orders, other.orders);
   wrong_clock = wrong_clock || other.wrong_clock;
   ground = std::max(ground, other.ground);
   planning = std::max(planning, other.planning);
   hazards = std::max(hazards, other.hazards);
+  covered = std::max(covered, other.covered);
   seen = std::max(seen, other.seen);
   withdrawn = std::max(withdrawn, other.withdrawn);
   taken_back = std::max(taken_back, other.taken_back);
@@ -589,6 +624,26 @@ void draw_wrong_clock(Random& random, TeamMission& mission) {
   mission.faults.push_back({{}, {}, ClockOff{whose, random.chance(0.5) ? off : -off}});
 }
 
+/// Shorter than lease and silence allow for, about as long, and longer.
+void draw_stalls(Random& random, TeamMission& mission, const FaultParams& params) {
+  static constexpr std::array kRoles{Role::any, Role::leader, Role::member};
+  for (std::size_t n = count(random, params.stalls); n > 0; --n) {
+    Fault fault;
+    fault.when.not_before = Instant{} + between(random, seconds{1}, params.phase);
+    fault.when.not_after = Instant{} + params.phase;
+    fault.when.after = between(random, Duration{}, seconds{6});
+    ProgramsStall still{{}, random.next()};
+    if (random.chance(0.15)) {
+      still.who = {kGroundStation};
+    } else {
+      fault.when.role = kRoles.at(random.index(kRoles.size()));
+    }
+    fault.lasts = between(random, milliseconds{200}, seconds{random.chance(0.5) ? 4 : 20});
+    fault.what = std::move(still);
+    mission.faults.push_back(std::move(fault));
+  }
+}
+
 }  // namespace
 
 void add_faults(TeamMission& mission, const FaultParams& params) {
@@ -655,6 +710,8 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }
   draw_surroundings(random, mission, params);
+  draw_stalls(random, mission, params);
+  draw_covered(random, mission, params);
 }
 
 }  // namespace skein::hil

@@ -123,6 +123,36 @@ TEST(Faults, WhoCrashesIsSilentAndWhoRestartsKnowsNothing) {
   EXPECT_TRUE(spoke_after);
 }
 
+TEST(Faults, WhoStandsStillSaysNothingAndHearsItAllAfterwards) {
+  auto mission = drawn("stall", 1);
+  mission.faults = {
+      {{.not_before = at_seconds(1), .role = Role::leader, .after = 1s}, 3s, ProgramsStall{}},
+      {{.not_before = at_seconds(90)}, {}, Healing{}}};
+  const auto flown = fly(mission);
+  ASSERT_GE(flown.faults.size(), 1U) << flown.trace;
+  const FaultEvent& stood = flown.faults[0];
+  EXPECT_EQ(stood.kind, FaultEvent::Kind::stands_still);
+  bool goes_on = false;
+  for (const auto& e : flown.events) {
+    if (e.vehicle != stood.vehicle) continue;
+    EXPECT_FALSE(e.time > stood.time && e.time < stood.time + 3s) << trace_line(e);
+    goes_on = goes_on || (e.time >= stood.time + 3s && e.round.coalition.leader == stood.vehicle);
+  }
+  EXPECT_TRUE(goes_on);
+  EXPECT_THAT(flown.run.broken, IsEmpty());
+}
+
+TEST(Faults, WhoStartsAnewAfterTheHealingIsToldOfWhatNobodyCouldBeToldOf) {
+  auto mission = seeded_mission(scenario("coalition-6"), 1, "none");
+  ASSERT_TRUE(mission);
+  SimulatedVehicle& only_scout = mission->vehicles.front();
+  only_scout.search = {{-400.0, 400.0}};  // far from the site
+  mission->duration_max = 300s;
+  mission->faults = {{{.not_before = at_seconds(20)}, 20s, ProgramsEnd{{only_scout.spec.id}}},
+                     {{.not_before = at_seconds(30)}, {}, Healing{}}};
+  EXPECT_TRUE(fly(*mission).run.sites_done);
+}
+
 TEST(Faults, AJoinerIsNotThereBefore) {
   auto mission = drawn("joining", 1);
   mission.faults = {{{.not_before = at_seconds(30)}, {}, LateStart{VehicleId{5}}}};

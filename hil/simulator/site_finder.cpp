@@ -47,6 +47,7 @@ std::vector<SiteFinder::Found> SiteFinder::look(const std::vector<Aircraft>& veh
     const auto finder = std::find_if(specs_.begin(), specs_.end(),
                                      [&](const auto& spec) { return spec.id == report.finder; });
     all.push_back(found(static_cast<std::size_t>(finder - specs_.begin()), report.site));
+    std::erase_if(to_report_, [&](const Site& site) { return site.id == report.site.id; });
   }
   return all;
 }
@@ -56,13 +57,14 @@ std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<Aircraft
   std::vector<Found> all;
   std::set<std::size_t> told;
   std::erase_if(to_report_, [&](const Site& site) {
-    if (mission_.reported.at(site.id) > now) return false;
+    const auto from = mission_.reported.find(site.id);
+    if (from != mission_.reported.end() && from->second > now) return false;
     std::optional<std::size_t> nearest;
     const auto distance = [&](std::size_t i) {
       return (vehicles[i].state().position().horizontal() - site.position).squaredNorm();
     };
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
-      if (!vehicles[i].in_coalitions()) continue;
+      if (!vehicles[i].takes_part() || vehicles[i].battery_fell()) continue;
       const auto activity = vehicles[i].activity();
       const bool free =
           activity == mission::Activity::searching || activity == mission::Activity::standing_by;
@@ -120,6 +122,7 @@ std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<Aircraft
     }
   }
   sensors_ = SurveySensors{nobody, specs_};
+  to_report_.insert(to_report_.end(), nobody.begin(), nobody.end());
   return all;
 }
 

@@ -24,7 +24,8 @@ class SiteFinder {
   };
   /// What the sensors see now.
   [[nodiscard]] std::vector<Found> look(const std::vector<Aircraft>& vehicles);
-  /// The sites whose time to be reported has come (TeamMission::reported).
+  /// The sites whose time to be reported has come (TeamMission::reported), and those that nobody
+  /// could be told of in report_all(): each to the nearest vehicle that can survey it and is free.
   [[nodiscard]] std::vector<Found> report_due(const std::vector<Aircraft>& vehicles, Instant now);
   /// Every site that is hidden still is reported, each to the nearest vehicle that can survey it;
   /// to different ones as long as there are some.
@@ -40,7 +41,7 @@ class SiteFinder {
   const TeamMission& mission_;
   std::vector<VehicleSpec> specs_;
   SurveySensors sensors_;
-  std::vector<Site> to_report_;
+  std::vector<Site> to_report_;  ///< as soon as somebody can be told
   KnownSites known_;
 };
 

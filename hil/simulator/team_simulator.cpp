@@ -70,6 +70,14 @@ bool reads_plans(const TeamMission& mission) {
          std::ranges::any_of(mission.faults, is_return);
 }
 
+/// Does he do it at the ground station?
+bool is_operators(const Fault& fault) {
+  return std::holds_alternative<SiteWithdrawal>(fault.what) ||
+         std::holds_alternative<GrantTakenBack>(fault.what) ||
+         std::holds_alternative<Ordered>(fault.what) ||
+         std::holds_alternative<RoutesOrdered>(fault.what);
+}
+
 /// What no program of the team reads: people do, and nobody watches here.
 bool is_for_watchers(const mission::Message& message, bool plans_are_read) {
   return (std::holds_alternative<mission::PlanReport>(message) && !plans_are_read) ||
@@ -117,6 +125,7 @@ class Team {
     channels_.resize(nodes_.size());
     restart_at_.resize(nodes_.size());
     gone_at_.resize(nodes_.size());
+    stands_until_.resize(nodes_.size(), Instant::min());
     ground_.start(Instant{});
     for (const auto& h : mission.hazards) {
       if (h.known_from <= Instant{}) hazards_.push_back(h.hazard);
@@ -214,6 +223,7 @@ class Team {
 
   bool begin(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
     if (std::holds_alternative<ProgramsEnd>(fault.what)) return end_programs(fault, who, now);
+    if (std::holds_alternative<ProgramsStall>(fault.what)) return stall_programs(fault, who, now);
     if (const auto* late = std::get_if<LateStart>(&fault.what)) {
       take_off(index_of(late->vehicle), now);
       tell(now, FaultEvent::Kind::joined, late->vehicle);
@@ -227,6 +237,20 @@ class Team {
       see(*seen, now);
       return true;
     }
+    if (is_operators(fault)) return !stands_still(ground_index(), now) && operate(fault, now);
+    const auto* worse = std::get_if<radio::Disturbance>(&fault.what);
+    if (std::holds_alternative<radio::Cut>(fault.what) || (worse != nullptr && worse->loss > 0.0)) {
+      tell(now, FaultEvent::Kind::radio, kGroundStation, describe(fault));
+    }
+    const bool heals = std::holds_alternative<Healing>(fault.what);
+    if (heals) tell(now, FaultEvent::Kind::healed, kGroundStation);
+    if (heals || std::holds_alternative<SitesReported>(fault.what)) {
+      hand_over_sites(finder_.report_all(vehicles_), now, true);
+    }
+    return true;
+  }
+
+  bool operate(const Fault& fault, Instant now) {
     if (const auto* gone = std::get_if<SiteWithdrawal>(&fault.what)) {
       const bool done = ground_.withdraw(gone->site, now);
       if (done) drain_ground(now);
@@ -242,20 +266,8 @@ class Team {
       tell(now, FaultEvent::Kind::ordered, order->vehicle, describe(fault));
       return true;
     }
-    if (const auto* routes = std::get_if<RoutesOrdered>(&fault.what)) {
-      if (!ground_.give(*routes, now)) return false;
-      tell(now, FaultEvent::Kind::ordered, kGroundStation, describe(fault));
-      return true;
-    }
-    const auto* worse = std::get_if<radio::Disturbance>(&fault.what);
-    if (std::holds_alternative<radio::Cut>(fault.what) || (worse != nullptr && worse->loss > 0.0)) {
-      tell(now, FaultEvent::Kind::radio, kGroundStation, describe(fault));
-    }
-    const bool heals = std::holds_alternative<Healing>(fault.what);
-    if (heals) tell(now, FaultEvent::Kind::healed, kGroundStation);
-    if (heals || std::holds_alternative<SitesReported>(fault.what)) {
-      hand_over_sites(finder_.report_all(vehicles_), now, true);
-    }
+    if (!ground_.give(std::get<RoutesOrdered>(fault.what), now)) return false;
+    tell(now, FaultEvent::Kind::ordered, kGroundStation, describe(fault));
     return true;
   }
 
@@ -283,8 +295,25 @@ class Team {
     return true;
   }
 
+  [[nodiscard]] bool stands_still(std::size_t i, Instant now) const {
+    return now < stands_until_[i];
+  }
+
+  /// What comes to it waits for it; its aircraft flies on by the guidance that it has.
+  bool stall_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
+    for (const VehicleId id : who) {
+      const std::size_t i = index_of(id);
+      if (!nodes_[i].on) continue;
+      stands_until_[i] = std::max(stands_until_[i], now + fault.lasts.value_or(Duration{}));
+      tell(now, FaultEvent::Kind::stands_still, id,
+           fmt::format("for {:.2f} s", to_seconds(fault.lasts.value_or(Duration{}))));
+    }
+    return true;
+  }
+
   void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now) {
     if (!nodes_[i].on) return;  // down already
+    stands_until_[i] = Instant::min();
     if (i == ground_index()) {
       ground_.end();
     } else {
@@ -335,7 +364,7 @@ class Team {
     positions_.find_near(from, anywhere ? kAnywhere_m : radio_.params().range_m, near_);
     for (const std::size_t to : near_) {
       if (to == from || to == ground_index()) continue;
-      const bool only_wakes = telemetry != nullptr && !vehicles_[to].watches(telemetry->state);
+      const bool only_wakes = telemetry != nullptr && !vehicles_[to].watches(*telemetry);
       post(from, to, near_hears ? 1 : hops_between(from, to), what, bytes, only_wakes, now);
     }
   }
@@ -376,7 +405,12 @@ class Team {
   // --- the mission ---
 
   void deliver(Instant now) {
-    while (const auto parcel = air_.pop_due(now)) {
+    while (auto parcel = air_.pop_due(now)) {
+      if (stands_still(parcel->to, now)) {
+        parcel->at = stands_until_[parcel->to];
+        air_.post(std::move(*parcel));
+        continue;
+      }
       if (parcel->to == ground_index()) {
         if (!ground_.running()) continue;
         ground_.on_message(std::get<mission::Message>(*parcel->what), parcel->from, now);
@@ -447,13 +481,13 @@ class Team {
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
       Aircraft& v = vehicles_[i];
       const Duration period = v.what().flies_formation ? kFormationNodePeriod : kNodePeriod;
-      if (!v.running() || !due(now, period)) continue;
+      if (!v.running() || !due(now, period) || stands_still(i, now)) continue;
       if (v.tell_state(now)) drain(i, now);
     }
   }
 
   void step_ground(Instant now) {
-    if (!ground_.running()) return;
+    if (!ground_.running() || stands_still(ground_index(), now)) return;
     if (!mission_.aircraft.empty() && due(now, kAircraftPeriod)) {
       for (const auto& one : mission_.aircraft) {
         if (const auto there = place_of(one, now)) ground_.on_aircraft(*there, now);
@@ -464,7 +498,7 @@ class Team {
   }
 
   void show_moment(Instant now) const {
-    if (!ground_.running()) return;
+    if (!ground_.running() || stands_still(ground_index(), now)) return;
     std::vector<OwnWord> words;
     for (const Aircraft& v : vehicles_) {
       words.push_back({v.spec().id, v.running() ? std::optional{v.telemetry()} : std::nullopt});
@@ -564,8 +598,8 @@ class Team {
       if (mission_.formation->planes && v.running() && v.activity() == mission::Activity::forming) {
         moved_at_ = now;
       }
-      bodies.push_back(
-          {v.spec().id, position, position.z() > MultirotorBody::kAirborne_m, v.off_m(now)});
+      bodies.push_back({v.spec().id, position, position.z() > MultirotorBody::kAirborne_m,
+                        v.off_m(now), !v.running() && !reference});
     }
     if (observer_.bodies) observer_.bodies(now, bodies);
   }
@@ -632,9 +666,10 @@ class Team {
   std::set<SiteId> sites_over_;                     ///< done, or refused by the operator
   std::vector<std::optional<Instant>> restart_at_;  ///< of each node
   std::vector<std::optional<Instant>> gone_at_;
-  bool script_done_ = false;        ///< of the formation
-  std::size_t orders_to_land_ = 0;  ///< that were given
-  Instant moved_at_{};              ///< it did, or was given an order
+  std::vector<Instant> stands_until_;  ///< the program of each node
+  bool script_done_ = false;           ///< of the formation
+  std::size_t orders_to_land_ = 0;     ///< that were given
+  Instant moved_at_{};                 ///< it did, or was given an order
   TeamResult result_;
 };
 
@@ -670,9 +705,12 @@ std::string trace_line(const mission::MissionEvent& event) {
 }
 
 std::string text_of(const FaultEvent& event) {
-  static constexpr std::array<const char*, 9> kNames{
-      "its program ends", "its program ends for good", "starts anew", "joins",      "is told of",
-      "appears",          "the radio heals",           "the radio,",  "is ordered,"};
+  static constexpr std::array<const char*, 10> kNames{
+      "its program ends", "its program ends for good",
+      "starts anew",      "joins",
+      "is told of",       "appears",
+      "the radio heals",  "the radio,",
+      "is ordered,",      "stands still"};
   return kNames.at(static_cast<std::size_t>(event.kind)) +
          (event.text.empty() ? "" : " " + event.text);
 }

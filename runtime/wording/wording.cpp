@@ -466,6 +466,10 @@ struct News {
         return who + " is silent: its place stays empty, and the others keep to other heights";
       case event::FormationNews::astray:
         return who + " is far from where it is led: the others keep clear of it until it is back";
+      case event::FormationNews::off_place:
+        return who + " came to rest beside " +
+               (e.vehicles.size() == 1 ? "its place" : "their places") +
+               ", by more than the tolerance";
       case event::FormationNews::count:
         break;
     }

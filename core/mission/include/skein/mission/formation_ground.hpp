@@ -129,6 +129,7 @@ class FormationGround {
   void find_stuck(Instant now);
   void give_again(Instant now);
   void judge_places(Instant now);
+  [[nodiscard]] bool stay_off(const std::vector<VehicleId>& who, Instant now);
   void correct_drift(Instant now);
   [[nodiscard]] std::optional<Vec3> goal_of(VehicleId vehicle) const;
   void report(EventBody body, Instant now);
@@ -150,6 +151,8 @@ class FormationGround {
   std::optional<Instant> stuck_since_;
   bool told_refused_ = false;          ///< that the order cannot be given again
   std::optional<Instant> near_since_;  ///< all within tolerance
+  std::optional<Instant> off_since_;   ///< somebody is beside where it was led to its end
+  bool told_off_ = false;
   std::optional<Instant> held_since_;
   std::optional<Instant> rest_since_;
   Instant next_;

@@ -69,11 +69,17 @@ class SeparationWatch {
   /// `layer_m`: the vehicle's own height, above the origin.
   SeparationWatch(const coalition::ProtocolParams& params, VehicleId self, double layer_m);
 
-  /// Whether the watch of one vehicle wants to hear of another that far from its height, though it
-  /// knows of none.
-  [[nodiscard]] static bool concerns(const coalition::ProtocolParams& params, double apart_m) {
+  /// Who lands, comes down through the heights of others: it is looked at from so much farther
+  /// above them.
+  static constexpr double kLands_m = 100.0;
+
+  /// Whether the watch of one vehicle wants to hear of another that does that, so far above it
+  /// (below: negative), though it knows of none.
+  [[nodiscard]] static bool concerns(const coalition::ProtocolParams& params, double above_m,
+                                     Activity activity) {
+    const double lands_m = activity == Activity::landing && above_m > 0.0 ? kLands_m : 0.0;
     return params.separation_look_ahead > Duration{} &&
-           std::abs(apart_m) < params.separation_vertical_m + kRoom_m;
+           std::abs(above_m) < params.separation_vertical_m + kRoom_m + lands_m;
   }
 
   void on_telemetry(const Telemetry& other, const VehicleState& own, Instant now);
@@ -113,6 +119,8 @@ class SeparationWatch {
     double horizontal_m = 0.0;
     double vertical_m = 0.0;
     double in_s = 0.0;
+    double height_m = 0.0;  ///< of the other, then
+    double around_m = 0.0;  ///< and so much higher and lower about then
     double margin_m = 0.0;  ///< of what is not known of the way until then
     double height_margin_m = 0.0;
   };

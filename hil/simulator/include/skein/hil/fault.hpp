@@ -91,13 +91,16 @@ struct RoutesOrdered {
 /// of the team must finish its work.
 struct Healing {};
 
-// What only processes have; the simulator passes over it.
-
 /// The programs of nodes stand still, and go on where they stood. Empty: as with ProgramsEnd.
+/// Processes are stopped, and flight controllers hold meanwhile; in virtual time what controls the
+/// aircraft goes on, by the guidance that it has.
 struct ProgramsStall {
   std::vector<VehicleId> who;
   std::uint64_t pick = 0;
 };
+
+// What only processes have; the simulator passes over it.
+
 /// A node's program runs for the rest of the time only.
 struct ProgramSlow {
   VehicleId node;

@@ -49,6 +49,7 @@ struct FaultParams {
   std::size_t restarts = 0;   ///< silent for some seconds, then with an agent without memory
   std::size_t joiners = 0;    ///< take off only during the phase
   Duration clock_offset{};    ///< of each vehicle's clock, to either side
+  std::size_t stalls = 0;     ///< times that a program stands still for seconds
   std::size_t ground = 0;     ///< times that the ground station's program ends and starts anew
   Duration planning{};        ///< a plan takes up to so long, in every vehicle
   std::size_t orders = 0;     ///< of the operator: to hold, to come home, to go on
@@ -58,6 +59,7 @@ struct FaultParams {
   // World:
   double wind_mps = 0.0;        ///< from anywhere, all the mission long, with gusts
   std::size_t hazards = 0;      ///< appear in flight
+  std::size_t covered = 0;      ///< sites over which one appears in flight
   std::size_t seen = 0;         ///< places that detectors tell of: false, doubled
   std::size_t withdrawn = 0;    ///< sites of the mission that the operator withdraws
   std::size_t taken_back = 0;   ///< sites whose grant the operator takes back

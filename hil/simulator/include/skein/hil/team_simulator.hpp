@@ -95,7 +95,8 @@ struct FaultEvent {
     appeared,
     healed,
     radio,
-    ordered
+    ordered,
+    stands_still
   };
   Instant time{};
   Kind kind = Kind::healed;
@@ -108,7 +109,8 @@ struct SeenBody {
   VehicleId vehicle;
   Vec3 position_m = Vec3::Zero();
   bool airborne = false;
-  double off_m = 0.0;  ///< from its reference, while it has one
+  double off_m = 0.0;   ///< from its reference, while it has one
+  bool adrift = false;  ///< nobody flies it any more: it comes down as it may
 };
 
 /// What a vehicle itself has to say at a moment, whether it is heard or not.
