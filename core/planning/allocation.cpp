@@ -128,6 +128,7 @@ Result<Allocation> allocate(const AllocationParams& params, const AllocationProb
   const bool bounded = chosen.result.bound < std::numeric_limits<double>::infinity();
   allocation.value_bound = bounded ? chosen.result.bound : quick_bound(table);
   allocation.value_bound = std::max(allocation.value_bound, allocation.value.total);
+  allocation.value_bound += table.free_slack();
   allocation.proven = allocation.gap() <= kValueTolerance;
   return allocation;
 }

@@ -2,12 +2,12 @@
 #include "allocation_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>
 #include <utility>
 
+#include "free_start.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/planning/arrival.hpp"
 #include "skein/planning/dubins_batch.hpp"
@@ -158,13 +158,17 @@ void AllocationTable::make_assessments() {
     return c.assess_radius_m;
   });
   std::vector<double> lengths_m(columns());
+  const bool any_free = std::any_of(rows_.begin() + static_cast<std::ptrdiff_t>(deliveries_),
+                                    rows_.end(), [this](const Row& row) { return is_free(row); });
+  for (const Alike& group : groups) {
+    for (std::size_t i = 0; any_free && i < group.columns.size(); ++i) {
+      make_free_arcs(group.columns[i]);
+    }
+  }
   for (std::size_t row = deliveries_; row < rows(); ++row) {
+    if (is_free(rows_[row])) continue;
     const ArcRequirement& arc = problem_->site.assessments[rows_[row].task.index];
     for (const Alike& group : groups) {
-      if (!arc.start_angle_rad) {
-        for (const std::size_t column : group.columns) make_free_arc(row, column);
-        continue;
-      }
       TaskPath task = arc_path(problem_->site, *arc.start_angle_rad, arc.dwell, group.extent_m, 1.0,
                                kAssessmentSense);
       group.lengths_to(task.entry, lengths_m);
@@ -177,25 +181,57 @@ void AllocationTable::make_assessments() {
   }
 }
 
+bool AllocationTable::is_free(const Row& row) const {
+  return row.task.kind == TaskKind::assess &&
+         !problem_->site.assessments[row.task.index].start_angle_rad;
+}
+
 /// As leg_to_arc, without hazards.
-void AllocationTable::make_free_arc(std::size_t row, std::size_t column) {
+void AllocationTable::make_free_arcs(std::size_t column) {
   const Candidate& vehicle = candidates_[column];
-  const ArcRequirement& arc = problem_->site.assessments[rows_[row].task.index];
-  std::array<TaskPath, kArcStarts> tasks;
-  std::array<double, kArcStarts> lengths_m{};
-  PoseBatch from;
-  PoseBatch to;
-  from.push_back(vehicle.pose);
-  to.reserve(tasks.size());
-  for (int i = 0; i < kArcStarts; ++i) {
-    TaskPath& task = tasks[static_cast<std::size_t>(i)];
-    task = arc_path(problem_->site, arc_start_rad(problem_->site, vehicle.pose, i), arc.dwell,
-                    vehicle.assess_radius_m, vehicle.speed_mps, kAssessmentSense);
-    to.push_back(task.entry);
+  const FreeStart start =
+      shortest_to_circle(vehicle.pose, vehicle.planning_radius_m, problem_->site.position,
+                         vehicle.assess_radius_m, kAssessmentSense);
+  for (std::size_t row = deliveries_; row < rows(); ++row) {
+    if (!is_free(rows_[row])) continue;
+    const ArcRequirement& arc = problem_->site.assessments[rows_[row].task.index];
+    const TaskPath task = arc_path(problem_->site, start.start_rad, arc.dwell,
+                                   vehicle.assess_radius_m, vehicle.speed_mps, kAssessmentSense);
+    // Around hazards all starts are looked at again: until then it is a bound.
+    const bool measured = problem_->hazards.empty();
+    set_pair(row, column, task, measured ? start.length_m : start.least_m);
+    if (measured) add_slack(row, column, start.length_m - start.least_m);
   }
-  shortest_dubins_lengths(from.columns(), to.columns(), vehicle.planning_radius_m, lengths_m);
-  const auto least = std::min_element(lengths_m.begin(), lengths_m.end());
-  set_pair(row, column, tasks[static_cast<std::size_t>(least - lengths_m.begin())], *least);
+}
+
+void AllocationTable::add_slack(std::size_t row, std::size_t column, double slack_m) {
+  if (!possible(row, column)) return;
+  const double seconds = slack_m * params_->time_margin / candidates_[column].speed_mps;
+  free_slack_s_ = std::max(free_slack_s_, seconds);
+}
+
+/// A plan whose assessments begin somewhat sooner, by other starts of their arcs, is one of these
+/// pairs once all of them wait for so long. J has no greater slope there.
+double AllocationTable::free_slack() const {
+  if (free_slack_s_ == 0.0) return 0.0;
+  double speeds_mps = 0.0;
+  for (std::size_t k = 0; k < assessments(); ++k) {
+    speeds_mps += candidates_[by_speed_[columns() - 1 - k]].speed_mps;
+  }
+  const double slope_per_s = reward_scale_ * assess_rewards_ * problem_->site.reward_decay_per_s +
+                             range_scale_ * speeds_mps +
+                             timing_scale_ * static_cast<double>(assessments());
+  return free_slack_s_ * slope_per_s;
+}
+
+bool AllocationTable::may_start_elsewhere(const std::vector<int>& column_of,
+                                          double assess_s) const {
+  for (std::size_t row = deliveries_; row < rows(); ++row) {
+    const std::size_t pair = index(row, static_cast<std::size_t>(column_of[row]));
+    if (!is_free(rows_[row]) || assess_s < least_s_[pair] || assess_s > greatest_s_[pair]) continue;
+    if (!open(row, static_cast<std::size_t>(column_of[row]), assess_s)) return true;
+  }
+  return false;
 }
 
 void AllocationTable::make_pairs() {
@@ -267,6 +303,7 @@ void AllocationTable::measure(std::size_t row, std::size_t column) {
     return;
   }
   set_pair(row, column, leg->task, leg->shortest_m);
+  add_slack(row, column, leg->slack_m);
   if (!leg->around) return;
   pair.lengths.emplace(transit_of(vehicle, leg->task, problem_->hazards), std::move(*leg->around));
 }

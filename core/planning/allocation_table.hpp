@@ -120,6 +120,12 @@ class AllocationTable {
   /// As bound, for all plans with moments not before these; never grows with either moment.
   [[nodiscard]] double bound_from(const Moments& at) const;
 
+  /// What J may be greater by for arcs that begin elsewhere than these pairs, where their start is
+  /// free, as far as lengths were measured; ranges and gaps aside.
+  [[nodiscard]] double free_slack() const;
+  /// Was an assessment of the plan refused by a gap that an arc from another start may not have?
+  [[nodiscard]] bool may_start_elsewhere(const std::vector<int>& column_of, double assess_s) const;
+
   /// Completes a choice of vehicles to a plan at its best moments, verified; nothing where these
   /// vehicles cannot. `soonest`: the earliest moments, even where later deliveries had a greater J.
   [[nodiscard]] std::optional<CoalitionPlan> timed(const std::vector<int>& column_of,
@@ -153,7 +159,9 @@ class AllocationTable {
   void make_pairs();
   void make_deliveries();
   void make_assessments();
-  void make_free_arc(std::size_t row, std::size_t column);
+  void make_free_arcs(std::size_t column);
+  [[nodiscard]] bool is_free(const Row& row) const;
+  void add_slack(std::size_t row, std::size_t column, double slack_m);
   void make_bounds();
   void set_pair(std::size_t row, std::size_t column, const TaskPath& task, double shortest_m);
   void measure(std::size_t row, std::size_t column);
@@ -182,6 +190,7 @@ class AllocationTable {
 
   double first_moment_s_ = 0.0;
   double last_offset_s_ = 0.0;
+  double free_slack_s_ = 0.0;  ///< what a start that was not looked at may be sooner by
   /// J = reward_scale_ (deliver_rewards_ exp(-beta t_d) + assess_rewards_ exp(-beta t_a))
   ///   + range_scale_ (range_m_ - metres) - timing_scale_ (t_a - required) assessments
   double reward_scale_ = 0.0;

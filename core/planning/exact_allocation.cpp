@@ -106,7 +106,8 @@ bool Sweep::solve(const Moments& at) {
     if (goal_ == Goal::value && !improves(value)) return true;
     if (!table_.verify(column_of_, at, Resumption::at_the_earliest)) {
       grown_ = true;
-      if (waits(at)) left_out_ = std::max(left_out_, value);
+      if (waits(at) || table_.may_start_elsewhere(column_of_, at.assess_s))
+        left_out_ = std::max(left_out_, value);
       continue;
     }
     result_.plan = CoalitionPlan{column_of_, at, value};

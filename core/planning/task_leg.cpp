@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "free_start.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/planning/dubins.hpp"
@@ -13,7 +14,17 @@
 namespace skein::planning {
 namespace {
 
+constexpr int kArcStarts = 24;
+
 std::string name(const Site& site) { return "site " + std::to_string(site.id.value); }
+
+/// The start angle of an arc that is tried among hazards as number `index`: the nearest point
+/// first, then round.
+double arc_start_rad(const Site& site, const Pose2& from, int index) {
+  const Vec2 out = from.position() - site.position;
+  const double nearest = out.norm() > 0.0 ? std::atan2(out.y(), out.x()) : 0.0;
+  return index == 0 ? nearest : wrap_pi(nearest + index * kTwoPi / kArcStarts);
+}
 
 /// As shortest_clear_path, with the way that was found.
 Result<Leg> leg_to(const AvoidanceParams& params, const Departure& departure,
@@ -38,12 +49,6 @@ Result<Leg> leg_to(const AvoidanceParams& params, const Departure& departure,
 
 }  // namespace
 
-double arc_start_rad(const Site& site, const Pose2& from, int index) {
-  const Vec2 out = from.position() - site.position;
-  const double nearest = out.norm() > 0.0 ? std::atan2(out.y(), out.x()) : 0.0;
-  return index == 0 ? nearest : wrap_pi(nearest + index * kTwoPi / kArcStarts);
-}
-
 Result<TaskPath> fixed_arc(const Site& site, double start_rad, Duration dwell, double arc_radius_m,
                            double planning_radius_m, double speed_mps, int turn) {
   if (arc_radius_m < planning_radius_m) {
@@ -64,16 +69,19 @@ Result<Leg> leg_to_arc(const AvoidanceParams& params, const Departure& departure
     const auto task = task_from(*arc.start_angle_rad);
     return task ? leg_to(params, departure, *task) : task.error();
   }
-  std::optional<Result<Leg>> best;
+  if (auto task = task_from(0.0); !task) return task.error();
+  const FreeStart plain =
+      shortest_to_circle(departure.from, departure.radius_m, site.position, arc_radius_m, turn);
+  Result<Leg> best = leg_to(params, departure, *task_from(plain.start_rad));
   for (int i = 0; i < kArcStarts; ++i) {
     const auto task = task_from(arc_start_rad(site, departure.from, i));
-    if (!task) return task.error();
     const double least_m = shortest_dubins_length(departure.from, task->entry, departure.radius_m);
-    if (best && *best && least_m >= (*best)->shortest_m) continue;
+    if (best && least_m >= best->shortest_m) continue;
     auto leg = leg_to(params, departure, *task);
-    if (!best || (leg && (!*best || leg->shortest_m < (*best)->shortest_m))) best = std::move(leg);
+    if (leg && (!best || leg->shortest_m < best->shortest_m)) best = std::move(leg);
   }
-  return std::move(*best);
+  if (best) best->slack_m = best->shortest_m - plain.least_m;
+  return best;
 }
 
 Result<Leg> leg_of(const AvoidanceParams& params, const Candidate& vehicle,

@@ -23,11 +23,6 @@ inline constexpr int kClockwise = -1;
 /// Every assessment of a site is flown in the same sense, so that vehicles on one circle keep their
 /// spacing.
 inline constexpr int kAssessmentSense = kCounterClockwise;
-inline constexpr int kArcStarts = 24;  ///< tried where the requirement leaves the start angle free
-
-/// The start angle of an arc that is tried as number `index`: the nearest point first, then round.
-[[nodiscard]] double arc_start_rad(const Site& site, const Pose2& from, int index);
-
 [[nodiscard]] Result<TaskPath> fixed_arc(const Site& site, double start_rad, Duration dwell,
                                          double arc_radius_m, double planning_radius_m,
                                          double speed_mps, int turn);
@@ -50,6 +45,7 @@ struct Leg {
   TaskPath task;
   double shortest_m = std::numeric_limits<double>::infinity();  ///< to the task's entry
   std::optional<ClearPath> around;  ///< the way of that length, where hazards were in reach
+  double slack_m = 0.0;             ///< what another start of an arc that is free may be nearer by
 };
 
 /// To the arc's start; the one that is reached soonest where the start angle is free.
