@@ -22,7 +22,10 @@ class Tree {
  public:
   Tree(const Model& model, const PlanningBudget& budget);
 
-  void run();
+  /// From the plan of a search, which goes on in between.
+  void run(Search& search);
+  /// From a plan.
+  void run(const Orders& orders, double cost);
 
   [[nodiscard]] double best_cost() const { return best_cost_; }
   [[nodiscard]] const Orders& best() const { return best_; }
@@ -41,6 +44,7 @@ class Tree {
     return best_cost_ == kInfinity ? kInfinity
                                    : best_cost_ - kCoupledTolerance * std::abs(best_cost_);
   }
+  void run();
   void search(std::uint64_t steps);
   void take(const Orders& orders, double cost);
   void explore(double bound);
@@ -49,8 +53,7 @@ class Tree {
 
   const Model& model_;
   const PlanningBudget& budget_;
-  Random random_{kSeed};
-  Search search_;
+  Search* search_ = nullptr;
   std::uint64_t next_search_ = kFirstSearchNodes;
   PartialPlan plan_;
   Bounds bounds_;
@@ -65,22 +68,31 @@ class Tree {
 Tree::Tree(const Model& model, const PlanningBudget& budget)
     : model_{model},
       budget_{budget},
-      search_{model, random_},
       plan_{model},
       bounds_{model},
       children_(model.tasks.size() + 1) {}
 
-void Tree::run() {
+void Tree::run(Search& search_between) {
+  search_ = &search_between;
   search(kFirstSearchStepsPerTask * model_.tasks.size());
+  run();
+}
+
+void Tree::run(const Orders& orders, double cost) {
+  take(orders, cost);
+  run();
+}
+
+void Tree::run() {
   const double bound = bounds_.chains(plan_);
   if (bound < threshold()) explore(bound);
 }
 
 void Tree::search(std::uint64_t steps) {
   for (std::uint64_t k = 0; k < steps && !(budget_.expired && budget_.expired()); ++k) {
-    search_.step();
+    search_->step();
   }
-  if (search_.best_cost() < best_cost_) take(search_.best(), search_.best_cost());
+  if (search_->best_cost() < best_cost_) take(search_->best(), search_->best_cost());
 }
 
 void Tree::take(const Orders& orders, double cost) {
@@ -94,7 +106,7 @@ void Tree::explore(double bound) {
     open_bound_ = std::min(open_bound_, bound);
     return;
   }
-  if (++nodes_ == next_search_) {
+  if (++nodes_ == next_search_ && search_ != nullptr) {
     search(nodes_ / kNodesPerSearchStep);
     next_search_ *= 2;
   }
@@ -162,6 +174,22 @@ void Tree::try_task(std::vector<Child>& children, Index task) {
 }
 
 }  // namespace
+
+Finish finish(const Model& model, const Orders& orders, std::uint64_t nodes,
+              const PlanningBudget& budget) {
+  const PlanningBudget limited{nodes, budget.expired};
+  Tree tree{model, limited};
+  tree.run(orders, Timing{model}.evaluate(orders) + left_out_cost(model, orders));
+  return {tree.best(), tree.is_proven()};
+}
+
+/// A wait that had to be lengthened may cost more than the bound, which knows of none.
+void mark(const Model& model, double bound_cost, bool proven, CoupledPlan& plan) {
+  plan.bound = model.objective(bound_cost);
+  plan.proven = proven && plan.gap() <= kCoupledTolerance;
+  if (plan.proven) plan.bound = plan.objective;
+}
+
 }  // namespace skein::planning::coupled
 
 namespace skein::planning {
@@ -169,18 +197,18 @@ namespace skein::planning {
 Result<CoupledPlan> branch_and_bound(const CoupledProblem& problem, const PlanningBudget& budget) {
   const auto model = coupled::Model::make(problem);
   if (!model) return model.error();
+  Random random{coupled::kSeed};
+  coupled::Search search{*model, random};
   coupled::Tree tree{*model, budget};
-  tree.run();
+  tree.run(search);
   if (tree.best_cost() == coupled::kInfinity) {
     return coupled::no_plan(*model, tree.is_proven() ? coupled::Sought::everywhere
                                                      : coupled::Sought::within_the_budget);
   }
   auto plan = coupled::make_plan(*model, problem, tree.best());
   if (!plan) return plan;
-  plan->bound = model->objective(tree.is_proven() ? tree.best_cost() : tree.bound());
-  // A wait that had to be lengthened may cost more than the bound, which knows of none.
-  plan->proven = tree.is_proven() && plan->gap() <= kCoupledTolerance;
-  if (plan->proven) plan->bound = plan->objective;
+  coupled::mark(*model, tree.is_proven() ? tree.best_cost() : tree.bound(), tree.is_proven(),
+                *plan);
   plan->steps = tree.nodes();
   return plan;
 }

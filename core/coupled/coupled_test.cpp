@@ -362,6 +362,24 @@ TEST(RuinAndRecreate, MoreStepsAreNeverWorseAndASeedIsAPlan) {
   }
 }
 
+/// Of twelve tasks the search leaves nothing to chance: it ends with the best plan, and says so.
+TEST(RuinAndRecreate, ASmallMakespanIsProven) {
+  for (std::uint64_t seed = 40; seed < 52; ++seed) {
+    Random draws{seed};
+    CoupledProblem problem = draw_problem(draws, {.sites = 4, .vehicles = 6});
+    problem.criterion = Criterion::makespan;
+    problem.flyable_waits = false;
+    const auto best = branch_and_bound(problem, {});
+    Random random{1};
+    const auto plan = ruin_and_recreate(problem, random, {.steps_max = 1000, .expired = {}});
+    ASSERT_TRUE(best.ok() && plan.ok());
+    ASSERT_TRUE(best->proven);
+    EXPECT_TRUE(plan->proven) << seed;
+    EXPECT_NEAR(plan->objective, best->objective, 1e-9 * best->objective) << seed;
+    EXPECT_LT(plan->steps, 1000U) << seed;
+  }
+}
+
 TEST(CoupledPlans, HoldATaskUntilItsWaitCanBeFlown) {
   // A delivery and the assessment of the site by one vehicle: near poses and a wait.
   bool held = false;

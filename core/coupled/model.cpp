@@ -421,6 +421,11 @@ Result<Model> Model::make(const CoupledProblem& problem) {
   Compiler compiler{problem, model, std::move(ways)};
   compiler.add_vehicles();
   compiler.add_chords();
+  const auto any = [](const std::vector<Gap>& gaps) {
+    return std::ranges::any_of(gaps, [](const Gap& gap) { return gap.high_s != 0.0; });
+  };
+  model.gaps = std::ranges::any_of(model.classes, any, &VehicleClass::gaps) ||
+               std::ranges::any_of(model.vehicles, any, &Vehicle::gaps);
   return model;
 }
 
@@ -474,10 +479,23 @@ Timing::Timing(const Model& model, Costs costs)
       sites_(model.sites.size()),
       vehicles_(model.vehicles.size()),
       time_s_(model.tasks.size()),
-      end_s_(model.tasks.size()) {}
+      end_s_(model.tasks.size()) {
+  for (const Index t : model.task_of) {
+    const Task& task = model.tasks[at(t)];
+    visits_.push_back({t, task.site, task.id.kind, task.offset_s});
+  }
+  for (Index i = 0; i < model.vehicle_count(); ++i) {
+    const Vehicle& vehicle = model.vehicles[at(i)];
+    fliers_.push_back(
+        {model.class_of(i).after_s.data(), vehicle.latest_s.data(),
+         costs == Costs::exact ? vehicle.range_weight_per_s : vehicle.search_weight_per_s});
+  }
+  done_.reserve(model.tasks.size());
+}
 
 double Timing::evaluate(const Orders& orders, double limit) {
   std::fill(sites_.begin(), sites_.end(), SiteState{});
+  done_.clear();
   ready_ = 0;
   left_ = 0;
   cost_ = 0.0;
@@ -489,11 +507,11 @@ double Timing::evaluate(const Orders& orders, double limit) {
     vehicles_[i] = {order.data(), order.data() + order.size(), kNone, 0.0};
     ready_ |= bit(static_cast<Index>(i));
     left_ += static_cast<int>(order.size());
-    for (const Index visit : order) {
-      const Task& task = model_.tasks[at(model_.task_of[at(visit)])];
-      SiteState& site = sites_[at(task.site)];
-      if (task.id.kind == TaskKind::survey) site.survey_open = true;
-      if (task.id.kind == TaskKind::deliver) ++site.deliveries_open;
+    for (const Index v : order) {
+      const Visit& visit = visits_[at(v)];
+      SiteState& site = sites_[at(visit.site)];
+      if (visit.kind == TaskKind::survey) site.survey_open = true;
+      if (visit.kind == TaskKind::deliver) ++site.deliveries_open;
     }
   }
   while (ready_ != 0) {
@@ -514,20 +532,20 @@ void Timing::advance(Index vehicle) {
   VehicleState& state = vehicles_[at(vehicle)];
   while (state.next != state.last) {
     const Index visit = *state.next;
-    const Task& task = model_.tasks[at(model_.task_of[at(visit)])];
-    SiteState& site = sites_[at(task.site)];
+    const Visit& its = visits_[at(visit)];
+    SiteState& site = sites_[at(its.site)];
     double time_s = state.free_s + model_.reach_from(vehicle, state.before)[visit];
-    if (!held_s_.empty()) time_s = std::max(time_s, held_s_[at(model_.task_of[at(visit)])]);
-    if (task.id.kind != TaskKind::survey) {
+    if (!held_s_.empty()) time_s = std::max(time_s, held_s_[at(its.task)]);
+    if (its.kind != TaskKind::survey) {
       if (site.survey_open) {
         site.for_survey |= bit(vehicle);
         return;
       }
-      if (task.id.kind == TaskKind::deliver) {
-        site.common_s = std::max(site.common_s, time_s - task.offset_s);
+      if (its.kind == TaskKind::deliver) {
+        site.common_s = std::max(site.common_s, time_s - its.offset_s);
         // Who comes twice waits for itself: the second never arrives.
         site.at_delivery |= bit(vehicle);
-        if (++site.arrived == site.deliveries_open) release(site);
+        if (++site.arrived == site.deliveries_open) release(its.site);
         return;
       }
       if (site.deliveries_open > 0) {
@@ -538,7 +556,7 @@ void Timing::advance(Index vehicle) {
     }
     time_s = model_.flyable_s(vehicle, state.before, visit, state.free_s, time_s);
     if (!finish(vehicle, visit, time_s)) return;
-    if (task.id.kind == TaskKind::survey) {
+    if (its.kind == TaskKind::survey) {
       site.survey_open = false;
       site.survey_end_s = state.free_s;
       site.common_s = state.free_s + model_.decide_wait_s;
@@ -551,10 +569,10 @@ void Timing::advance(Index vehicle) {
 /// False, and the cost infinite, where the vehicle's range does not suffice.
 bool Timing::finish(Index vehicle, Index visit, double time_s) {
   VehicleState& state = vehicles_[at(vehicle)];
-  const Vehicle& its = model_.vehicles[at(vehicle)];
-  const Index task = model_.task_of[at(visit)];
-  const double end_s = time_s + model_.classes[at(its.kind)].after_s[at(visit)];
-  if (!(end_s <= its.latest_s[at(visit)])) {
+  const Flier& its = fliers_[at(vehicle)];
+  const Index task = visits_[at(visit)].task;
+  const double end_s = time_s + its.after_s[visit];
+  if (!(end_s <= its.latest_s[visit])) {
     cost_ = kInfinity;
     ready_ = 0;
     return false;
@@ -564,12 +582,11 @@ bool Timing::finish(Index vehicle, Index visit, double time_s) {
   end_sum_s_ += end_s;
   cost_ = model_.add(cost_, costs_ == Costs::exact ? model_.cost_of(task, end_s)
                                                    : model_.least_cost_of(task, end_s));
-  const double weight_per_s =
-      costs_ == Costs::exact ? its.range_weight_per_s : its.search_weight_per_s;
-  if (weight_per_s > 0.0) cost_ += weight_per_s * (end_s - state.free_s);
+  if (its.weight_per_s > 0.0) cost_ += its.weight_per_s * (end_s - state.free_s);
   state.free_s = end_s;
   state.before = visit;
   ++state.next;
+  done_.push_back({vehicle, visit, state.next != state.last ? *state.next : kNone});
   --left_;
   return true;
 }
@@ -577,6 +594,7 @@ bool Timing::finish(Index vehicle, Index visit, double time_s) {
 /// The first moment from site.common_s on that every vehicle there can keep.
 double Timing::common_of(const SiteState& site) const {
   double common_s = site.common_s;
+  if (!model_.gaps) return common_s;
   for (bool raised = true; raised;) {
     raised = false;
     for (Mask there = site.at_delivery; there != 0; there &= there - 1) {
@@ -594,16 +612,16 @@ double Timing::common_of(const SiteState& site) const {
   return common_s;
 }
 
-void Timing::release(SiteState& site) {
+void Timing::release(Index index) {
+  SiteState& site = sites_[at(index)];
+  const double wait_s = model_.sites[at(index)].assess_wait_s;
   site.common_s = common_of(site);
   for (Mask there = site.at_delivery; there != 0; there &= there - 1) {
     const auto vehicle = static_cast<Index>(std::countr_zero(there));
     const Index visit = *vehicles_[at(vehicle)].next;
-    const Task& task = model_.tasks[at(model_.task_of[at(visit)])];
-    const double time_s = site.common_s + task.offset_s;
+    const double time_s = site.common_s + visits_[at(visit)].offset_s;
     if (!finish(vehicle, visit, time_s)) return;
-    site.last_delivery_s =
-        std::max(site.last_delivery_s, time_s + model_.sites[at(task.site)].assess_wait_s);
+    site.last_delivery_s = std::max(site.last_delivery_s, time_s + wait_s);
   }
   site.deliveries_open = 0;
   wake(site.at_delivery | site.for_deliveries);

@@ -119,6 +119,7 @@ class Model {
 
   std::vector<Task> tasks;
   std::vector<Index> task_of;  ///< by visit
+  bool gaps = false;           ///< is there any?
   std::vector<SiteTasks> sites;
   std::vector<VehicleClass> classes;
   std::vector<Vehicle> vehicles;
@@ -152,6 +153,7 @@ class Model {
   /// `next`, given that it can be there at some time until `time_s`.
   [[nodiscard]] double flyable_s(Index vehicle, Index visit, Index next, double free_s,
                                  double time_s) const {
+    if (!gaps) return time_s;
     const Gap& gap = gap_from(vehicle, visit, next);
     return time_s > free_s + gap.low_s ? std::max(time_s, free_s + gap.high_s) : time_s;
   }
@@ -222,6 +224,14 @@ class Timing {
   /// Of the last evaluate, when finite; by task.
   [[nodiscard]] const std::vector<double>& times_s() const { return time_s_; }
   [[nodiscard]] const std::vector<double>& ends_s() const { return end_s_; }
+  /// One of the visits, and what its vehicle does next; kNone: nothing.
+  struct Done {
+    Index vehicle = kNone;
+    Index visit = kNone;
+    Index next = kNone;
+  };
+  /// All of them; what must follow another one comes after it.
+  [[nodiscard]] const std::vector<Done>& done() const { return done_; }
   /// Of the tasks in the orders, over the number of all.
   [[nodiscard]] double mean_end_s() const {
     return end_sum_s_ / static_cast<double>(model_.tasks.size());
@@ -245,14 +255,29 @@ class Timing {
     Index before = kNone;  ///< the visit that it comes from
     double free_s = 0.0;
   };
+  /// What is asked often, next to each other.
+  struct Visit {
+    Index task = kNone;
+    Index site = kNone;
+    TaskKind kind = TaskKind::survey;
+    double offset_s = 0.0;
+  };
+  struct Flier {
+    const double* after_s = nullptr;
+    const double* latest_s = nullptr;
+    double weight_per_s = 0.0;
+  };
   void advance(Index vehicle);
   bool finish(Index vehicle, Index visit, double time_s);
-  void release(SiteState& site);
+  void release(Index index);
   [[nodiscard]] double common_of(const SiteState& site) const;
   void wake(Mask vehicles) { ready_ |= vehicles; }
 
   const Model& model_;
   Costs costs_;
+  std::vector<Visit> visits_;
+  std::vector<Flier> fliers_;
+  std::vector<Done> done_;
   std::vector<SiteState> sites_;
   std::vector<VehicleState> vehicles_;
   std::vector<double> time_s_;

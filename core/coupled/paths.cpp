@@ -8,30 +8,31 @@ namespace skein::planning::coupled {
 Paths::Paths(const Model& model)
     : model_{model}, sites_(model.sites.size()), tail_s_(model.tasks.size(), 0.0) {}
 
-void Paths::find(const Orders& orders, const Timing& timing) {
+void Paths::find(const Timing& timing) {
   std::fill(sites_.begin(), sites_.end(), Site{});
-  jobs_.clear();
-  for (std::size_t i = 0; i < orders.size(); ++i) {
-    const auto& order = orders[i];
-    for (std::size_t p = 0; p < order.size(); ++p) {
-      add({timing.times_s()[at(model_.task_of[at(order[p])])], static_cast<Index>(i), order[p],
-           p + 1 < order.size() ? order[p + 1] : kNone},
-          timing);
+  for (const Timing::Done& done : timing.done()) {
+    const Index index = model_.task_of[at(done.visit)];
+    const Task& task = model_.tasks[at(index)];
+    Site& site = sites_[at(task.site)];
+    const double time_s = timing.times_s()[at(index)];
+    if (task.id.kind == TaskKind::survey) {
+      site.survey_end_s = timing.ends_s()[at(index)];
+    } else if (task.id.kind == TaskKind::deliver) {
+      site.common_s = std::max(site.common_s, time_s - task.offset_s);
+      site.last_delivery_s = std::max(site.last_delivery_s, time_s);
     }
   }
-  // What must follow a task is later: against the time, all tails that one needs are there.
-  std::sort(jobs_.begin(), jobs_.end(),
-            [](const Job& a, const Job& b) { return a.time_s > b.time_s; });
-  for (const Job& job : jobs_) {
-    const Index index = model_.task_of[at(job.visit)];
+  // Backwards: all tails that one needs are there.
+  for (auto done = timing.done().rbegin(); done != timing.done().rend(); ++done) {
+    const Index index = model_.task_of[at(done->visit)];
     const Task& task = model_.tasks[at(index)];
     Site& site = sites_[at(task.site)];
     double after_s = site_tail_s(task);
-    if (job.next != kNone) {
-      after_s = std::max(after_s, model_.reach_from(job.vehicle, job.visit)[job.next] +
-                                      tail_s(model_.task_of[at(job.next)]));
+    if (done->next != kNone) {
+      after_s = std::max(after_s, model_.reach_from(done->vehicle, done->visit)[done->next] +
+                                      tail_s(model_.task_of[at(done->next)]));
     }
-    const double tail_s = model_.class_of(job.vehicle).after_s[at(job.visit)] + after_s;
+    const double tail_s = model_.class_of(done->vehicle).after_s[at(done->visit)] + after_s;
     tail_s_[at(index)] = tail_s;
     if (task.id.kind == TaskKind::deliver) {
       site.common_tail_s = std::max(site.common_tail_s, task.offset_s + tail_s);
@@ -39,19 +40,6 @@ void Paths::find(const Orders& orders, const Timing& timing) {
       site.assess_tail_s = std::max(site.assess_tail_s, tail_s);
     }
   }
-}
-
-void Paths::add(const Job& job, const Timing& timing) {
-  const Index index = model_.task_of[at(job.visit)];
-  const Task& task = model_.tasks[at(index)];
-  Site& site = sites_[at(task.site)];
-  if (task.id.kind == TaskKind::survey) {
-    site.survey_end_s = timing.ends_s()[at(index)];
-  } else if (task.id.kind == TaskKind::deliver) {
-    site.common_s = std::max(site.common_s, job.time_s - task.offset_s);
-    site.last_delivery_s = std::max(site.last_delivery_s, job.time_s);
-  }
-  jobs_.push_back(job);
 }
 
 /// Who delays one delivery delays all of the site.
@@ -86,22 +74,26 @@ double Paths::ready_s(const Task& task) const {
   return site.last_delivery_s + model_.sites[at(task.site)].assess_wait_s;
 }
 
-double Paths::through_s(const std::vector<Index>& order, const Timing& timing, Index vehicle,
-                        std::size_t position, Index visit) const {
-  const Task& task = model_.tasks[at(model_.task_of[at(visit)])];
+Paths::Newcomer Paths::newcomer(const Task& task) const {
+  const double common_s = sites_[at(task.site)].common_tail_s;
+  const bool grouped = task.id.kind == TaskKind::deliver && common_s != kNever;
+  return {ready_s(task), site_tail_s(task), grouped ? common_s - task.offset_s : 0.0};
+}
+
+double Paths::through_s(const Newcomer& task, const std::vector<Index>& order, const Timing& timing,
+                        Index vehicle, std::size_t position, Index visit) const {
   const Index before = position == 0 ? kNone : order[position - 1];
   const double free_s = before == kNone ? 0.0 : timing.ends_s()[at(model_.task_of[at(before)])];
-  const double time_s = std::max(free_s + model_.reach_from(vehicle, before)[visit], ready_s(task));
+  const double time_s = std::max(free_s + model_.reach_from(vehicle, before)[visit], task.ready_s);
   const double end_s = time_s + model_.class_of(vehicle).after_s[at(visit)];
   if (!(end_s <= model_.vehicles[at(vehicle)].latest_s[at(visit)])) return kInfinity;
-  double after_s = site_tail_s(task);
+  double after_s = task.tail_s;
   if (position < order.size()) {
     const Index next = order[position];
     after_s = std::max(after_s,
                        model_.reach_from(vehicle, visit)[next] + tail_s(model_.task_of[at(next)]));
   }
-  if (task.id.kind != TaskKind::deliver) return end_s + after_s;
-  return std::max(end_s + after_s, time_s - task.offset_s + sites_[at(task.site)].common_tail_s);
+  return std::max(end_s + after_s, time_s + task.group_s);
 }
 
 }  // namespace skein::planning::coupled

@@ -14,23 +14,26 @@ class Paths {
  public:
   explicit Paths(const Model& model);
 
-  /// `timing` is that of the orders.
-  void find(const Orders& orders, const Timing& timing);
+  /// `timing` is that of the plan.
+  void find(const Timing& timing);
 
   /// From the time of a task of the plan to the end of the last that must follow it.
   [[nodiscard]] double tail_s(Index task) const;
-  /// The end of the longest path through a visit that is inserted into a vehicle's order; infinite
-  /// where it would end after the vehicle's deadline. Its task is not in the plan.
-  [[nodiscard]] double through_s(const std::vector<Index>& order, const Timing& timing,
-                                 Index vehicle, std::size_t position, Index visit) const;
+
+  /// A task that is not in the plan, as its site goes.
+  struct Newcomer {
+    double ready_s = 0.0;  ///< no earlier
+    double tail_s = 0.0;   ///< from its end
+    double group_s = 0.0;  ///< from its time, by way of the site's other deliveries
+  };
+  [[nodiscard]] Newcomer newcomer(const Task& task) const;
+  /// The end of the longest path through a visit of it that is inserted into a vehicle's order;
+  /// infinite where it would end after the vehicle's deadline.
+  [[nodiscard]] double through_s(const Newcomer& task, const std::vector<Index>& order,
+                                 const Timing& timing, Index vehicle, std::size_t position,
+                                 Index visit) const;
 
  private:
-  struct Job {
-    double time_s = 0.0;
-    Index vehicle = kNone;
-    Index visit = kNone;
-    Index next = kNone;  ///< visit
-  };
   /// Of what of it is in the plan; kNever where nothing is.
   struct Site {
     double survey_end_s = kNever;
@@ -41,14 +44,12 @@ class Paths {
   };
   static constexpr double kNever = -1.0;
 
-  void add(const Job& job, const Timing& timing);
   [[nodiscard]] double site_tail_s(const Task& task) const;
   [[nodiscard]] double ready_s(const Task& task) const;
 
   const Model& model_;
   std::vector<Site> sites_;
   std::vector<double> tail_s_;  ///< by task
-  std::vector<Job> jobs_;
 };
 
 }  // namespace skein::planning::coupled

@@ -32,11 +32,21 @@ constexpr double kLeaveOut = 0.03;  ///< chance that an optional site is not put
 // Where the criterion is the makespan.
 constexpr double kMeanEnd = 0.1;  ///< of the score
 constexpr double kPath = 0.02;    ///< of a place: how long the path through it is
-constexpr std::uint64_t kCycleOfPaths = 200;
-constexpr int kRuinMostOfPaths = 15;    ///< tasks taken out at once, and not only a part of all
-constexpr double kAny = 0.5;            ///< chance that they are any, not near to each other
-constexpr double kCritical = 0.8;       ///< chance that the first is on a longest path
+constexpr double kDetour = 0.05;  ///< and how much more its vehicle flies
+constexpr std::uint64_t kCycleOfPaths = 100;
+constexpr double kAnew = 0.5;         ///< chance that a cycle does not go on from the best plan
+constexpr int kRuinMostOfPaths = 15;  ///< tasks taken out at once, and not only a part of all
+constexpr double kAny = 0.5;          ///< chance that they are any, not near to each other
+constexpr double kCritical = 0.8;     ///< chance that the first is on a longest path
+// What few tasks are left to chance is done: the tree of all plans is small.
+constexpr std::uint64_t kStepsBeforeTree = 200;
+constexpr std::uint64_t kTreeNodes = 500;
+constexpr Index kTreeTasksMax = 12;
 constexpr double kOnPath = 1.0 - 1e-9;  ///< of the makespan: the length of a longest path
+
+bool is_small(const Model& model) {
+  return model.criterion == Criterion::makespan && model.task_count() <= kTreeTasksMax;
+}
 
 }  // namespace
 
@@ -114,10 +124,21 @@ std::size_t Search::must(const Solution& plan) const {
                                                 [this](Index t) { return !is_optional(t); }));
 }
 
+/// Hot again, from the best plan or, as what is near that may be worse than what is far, anew.
+void Search::begin_cycle() {
+  current_ = best_;
+  if (model_.criterion != Criterion::makespan || steps_ == 1 || !random_.chance(kAnew)) return;
+  next_ = best_;
+  for (auto& order : next_.orders) order.clear();
+  next_.missing = missing_of(next_.orders);
+  recreate(next_, kInfinity);
+  if (must(next_) == 0 && next_.score < kInfinity) std::swap(current_, next_);
+}
+
 void Search::step() {
   const std::uint64_t cycle = model_.criterion == Criterion::makespan ? kCycleOfPaths : kCycle;
   const std::uint64_t phase = steps_++ % cycle;
-  if (phase == 0) current_ = best_;
+  if (phase == 0) begin_cycle();
   const double part = static_cast<double>(phase) / static_cast<double>(cycle);
   const double heat = best_cost_ < kInfinity ? kHot * std::pow(kCold / kHot, part) : 0.0;
   const double limit = current_.score - heat * best_.score * std::log(1.0 - random_.uniform());
@@ -135,6 +156,13 @@ void Search::step() {
   }
   ruins_.learn(merit);
   sorts_.learn(merit);
+}
+
+void Search::take(const Orders& orders) {
+  current_.orders = orders;
+  current_.missing = missing_of(orders);
+  current_.score = score_of(orders) + left_out_cost(model_, orders);
+  accept_best();
 }
 
 void Search::ruin(Solution& plan) {
@@ -156,7 +184,7 @@ void Search::ruin(Solution& plan) {
   std::fill(chosen_.begin(), chosen_.end(), 0);
   if (by_paths) {
     // Only a longest path can be shortened; whole sites or vehicles help less often.
-    const Index first = random_.chance(kCritical) ? critical_task(plan) : any_task();
+    const Index first = random_.chance(kCritical) ? critical_task() : any_task();
     if (random_.chance(kAny)) {
       choose_any(first, count);
     } else {
@@ -196,8 +224,8 @@ void Search::take_out(Solution& plan) {
   }
 }
 
-Index Search::critical_task(const Solution& plan) {
-  paths_.find(plan.orders, timing_);
+Index Search::critical_task() {
+  paths_.find(timing_);
   const double longest_s = *std::max_element(end_s_.begin(), end_s_.end());
   sorted_.clear();
   for (Index t = 0; t < model_.task_count(); ++t) {
@@ -334,21 +362,35 @@ bool Search::may_take(const Solution& plan, Index vehicle, const Task& task) con
   return used < model_.vehicles[at(vehicle)].loads;
 }
 
-/// The place where the longest path through the task is shortest, of those that can be flown.
+/// What a vehicle has more to fly with a visit between two others; kNone: the start, or no more.
+double Search::detour_s(Index vehicle, Index before, Index visit, Index next) const {
+  const double* const from_s = model_.reach_from(vehicle, before);
+  const double there_s = from_s[visit] + model_.class_of(vehicle).after_s[at(visit)];
+  if (next == kNone) return there_s;
+  return there_s + model_.reach_from(vehicle, visit)[next] - from_s[next];
+}
+
+/// The place where the longest path through the task is shortest, of those that can be flown; where
+/// that is of little difference, the one that keeps its vehicle the least busy.
 /// Precondition: `timing_` is that of the plan.
 Search::Place Search::best_place_by_paths(Solution& plan, Index task) {
   const Task& its = model_.tasks[at(task)];
   const double cost = timed_cost_;
-  paths_.find(plan.orders, timing_);
+  paths_.find(timing_);
+  const Paths::Newcomer newcomer = paths_.newcomer(its);
   places_.clear();
   for (Index i = 0; i < model_.vehicle_count(); ++i) {
     if (!may_take(plan, i, its)) continue;
+    const auto& order = plan.orders[at(i)];
     for (Index v = its.first_visit; v < its.first_visit + its.visits; ++v) {
-      for (std::size_t p = 0; p <= plan.orders[at(i)].size(); ++p) {
+      for (std::size_t p = 0; p <= order.size(); ++p) {
         if (random_.chance(kBlink)) continue;
-        const double path_s = paths_.through_s(plan.orders[at(i)], timing_, i, p, v);
+        const double path_s = paths_.through_s(newcomer, order, timing_, i, p, v);
         if (path_s == kInfinity) continue;
-        places_.push_back({i, p, v, std::max(cost, path_s) + kPath * path_s});
+        const double score = std::max(cost, path_s) + kPath * path_s +
+                             kDetour * detour_s(i, p == 0 ? kNone : order[p - 1], v,
+                                                p < order.size() ? order[p] : kNone);
+        places_.push_back({i, p, v, score});
       }
     }
   }
@@ -439,12 +481,22 @@ Result<CoupledPlan> ruin_and_recreate(const CoupledProblem& problem, Random& ran
   const auto model = coupled::Model::make(problem);
   if (!model) return model.error();
   coupled::Search search{*model, random};
-  while (!budget.is_spent(search.steps())) search.step();
+  bool proven = false;
+  while (!proven && !budget.is_spent(search.steps())) {
+    search.step();
+    const bool is_due = search.steps() == coupled::kStepsBeforeTree;
+    if (!is_due || !coupled::is_small(*model) || search.best_cost() == coupled::kInfinity) continue;
+    const auto finish = coupled::finish(*model, search.best(), coupled::kTreeNodes, budget);
+    search.take(finish.orders);
+    proven = finish.proven;
+  }
   if (search.best_cost() == coupled::kInfinity) {
     return coupled::no_plan(*model, coupled::Sought::within_the_budget);
   }
   auto plan = coupled::make_plan(*model, problem, search.best());
-  if (plan) plan->steps = search.steps();
+  if (!plan) return plan;
+  plan->steps = search.steps();
+  if (proven) coupled::mark(*model, search.best_cost(), true, *plan);
   return plan;
 }
 

@@ -18,6 +18,8 @@ class Search {
   Search(const Model& model, Random& random);
 
   void step();
+  /// A better plan that was found otherwise, which it goes on from.
+  void take(const Orders& orders);
 
   /// Infinite, and no orders of use, while no plan with all tasks was found.
   [[nodiscard]] double best_cost() const { return best_cost_; }
@@ -50,10 +52,11 @@ class Search {
 
   [[nodiscard]] double score_of(const Orders& orders, double limit = kInfinity);
   void accept_best();
+  void begin_cycle();
 
   void ruin(Solution& plan);
   void take_out(Solution& plan);
-  [[nodiscard]] Index critical_task(const Solution& plan);
+  [[nodiscard]] Index critical_task();
   void choose_any(Index first, int count);
   void choose_near(Index seed, int count);
   void choose_vehicles(const Solution& plan, int count);
@@ -70,6 +73,7 @@ class Search {
   }
   [[nodiscard]] Place best_place(Solution& plan, Index task);
   [[nodiscard]] Place best_place_by_paths(Solution& plan, Index task);
+  [[nodiscard]] double detour_s(Index vehicle, Index before, Index visit, Index next) const;
   [[nodiscard]] bool may_take(const Solution& plan, Index vehicle, const Task& task) const;
   [[nodiscard]] double least_score_at(const Solution& plan, Index vehicle, std::size_t position,
                                       Index visit) const;
@@ -95,5 +99,15 @@ class Search {
   std::vector<std::pair<double, Index>> sorted_;
   std::vector<Place> places_;  ///< each with the least that it could score
 };
+
+/// What branch_and_bound makes of a plan in so many nodes.
+struct Finish {
+  Orders orders;
+  bool proven = false;  ///< no plan is better
+};
+/// Says of a plan what is known of the best that could be.
+void mark(const Model& model, double bound_cost, bool proven, CoupledPlan& plan);
+[[nodiscard]] Finish finish(const Model& model, const Orders& orders, std::uint64_t nodes,
+                            const PlanningBudget& budget);
 
 }  // namespace skein::planning::coupled

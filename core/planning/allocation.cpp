@@ -61,7 +61,8 @@ Chosen run_best(const AllocationParams& params, AllocationTable& table,
                 const PlanningBudget& budget) {
   Chosen best{AllocationMethod::exact, run(params, AllocationMethod::exact, table, budget)};
   for (const auto method : {AllocationMethod::greedy, AllocationMethod::colony}) {
-    if (best.result.proven) break;
+    // Whoever chooses the vehicles, the moments are of those that exact has looked at.
+    if (best.result.proven || (best.result.plan && !best.result.cut)) break;
     // Where exact found a plan but not the time to finish, there is none for the others.
     if (best.result.plan && budget.is_spent(0)) break;
     MethodResult other = run(params, method, table, budget);
@@ -127,6 +128,7 @@ Result<Allocation> allocate(const AllocationParams& params, const AllocationProb
   const bool bounded = chosen.result.bound < std::numeric_limits<double>::infinity();
   allocation.value_bound = bounded ? chosen.result.bound : quick_bound(table);
   allocation.value_bound = std::max(allocation.value_bound, allocation.value.total);
+  allocation.value_bound += table.free_slack();
   allocation.proven = allocation.gap() <= kValueTolerance;
   return allocation;
 }
@@ -134,7 +136,8 @@ Result<Allocation> allocate(const AllocationParams& params, const AllocationProb
 Result<TaskPlan> plan_task(const AllocationParams& params, const Candidate& vehicle, Instant start,
                            const Site& site, const TaskAssignment& assignment,
                            std::span<const Hazard> hazards) {
-  const auto leg = leg_of(params.avoidance, vehicle, site, assignment.task, hazards);
+  const auto leg =
+      leg_of(params.avoidance, vehicle, departure_of(vehicle, hazards), site, assignment.task);
   if (!leg) return leg.error();
   const TaskKind kind = assignment.task.kind;
   const auto path =
@@ -148,10 +151,11 @@ Result<TaskPlan> plan_survey(const AllocationParams& params, const VehicleSpec& 
                              const Pose2& from, Instant start, const Site& site,
                              std::span<const Hazard> hazards) {
   const double radius_m = vehicle.planning_radius_m();
+  const Departure departure{from, radius_m, hazards};
   // A survey is flown alone: in the sense that gets there sooner.
   const auto leg_in = [&](int turn) {
-    return leg_to_arc(params.avoidance, from, radius_m, vehicle.sensor_radius_m,
-                      vehicle.cruise_speed_mps, site, site.survey, turn, hazards);
+    return leg_to_arc(params.avoidance, departure, vehicle.sensor_radius_m,
+                      vehicle.cruise_speed_mps, site, site.survey, turn);
   };
   Result<Leg> leg = leg_in(kCounterClockwise);
   if (auto other = leg_in(kClockwise); other && (!leg || other->shortest_m < leg->shortest_m)) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "skein/base/angles.hpp"
@@ -196,14 +198,32 @@ class BruteForce {
       return best;
     }
     const auto& arc = problem_.site.assessments[task.index];
-    const Vec2 out = c.pose.position() - problem_.site.position;
-    for (int i = 0; i < (arc.start_angle_rad ? 1 : 24); ++i) {
-      const double angle = arc.start_angle_rad
-                               ? *arc.start_angle_rad
-                               : wrap_pi(std::atan2(out.y(), out.x()) + i * kTwoPi / 24);
-      consider(arc_path(problem_.site, angle, arc.dwell, c.assess_radius_m, c.speed_mps, 1));
+    const auto consider_start = [&](double start_rad) {
+      const double before_m = best ? best->shortest_m : INFINITY;
+      consider(arc_path(problem_.site, start_rad, arc.dwell, c.assess_radius_m, c.speed_mps, 1));
+      return best && best->shortest_m < before_m;
+    };
+    if (arc.start_angle_rad) {
+      consider_start(*arc.start_angle_rad);
+      return best;
+    }
+    // Every degree, then ever nearer to the best.
+    double at_rad = 0.0;
+    for (int i = 0; i < 360; ++i) {
+      if (consider_start(radians(i))) at_rad = radians(i);
+    }
+    for (double step = radians(0.5); step > 1e-7; step *= 0.7) {
+      for (const double next : {at_rad - step, at_rad + step}) {
+        if (consider_start(next)) at_rad = next;
+      }
     }
     return best;
+  }
+
+  const std::optional<Leg>& known_leg(std::size_t candidate, std::size_t task) {
+    const auto [known, fresh] = legs_of_.try_emplace({candidate, task});
+    if (fresh) known->second = leg(problem_.candidates[candidate], tasks_[task]);
+    return known->second;
   }
 
   void choose(std::size_t task) {
@@ -213,7 +233,7 @@ class BruteForce {
     }
     for (std::size_t c = 0; c < problem_.candidates.size(); ++c) {
       if (std::find(chosen_.begin(), chosen_.end(), c) != chosen_.end()) continue;
-      const auto found = leg(problem_.candidates[c], tasks_[task]);
+      const auto& found = known_leg(c, task);
       if (!found) continue;
       chosen_.push_back(c);
       legs_.push_back(*found);
@@ -309,6 +329,7 @@ class BruteForce {
   std::vector<TaskId> tasks_;
   std::vector<std::size_t> chosen_;
   std::vector<Leg> legs_;
+  std::map<std::pair<std::size_t, std::size_t>, std::optional<Leg>> legs_of_;
   double best_ = -INFINITY;
 };
 
@@ -356,6 +377,19 @@ TEST(ExactAllocation, WithOffsetsAndFreeAngles) {
 }
 TEST(ExactAllocation, AmongHazards) {
   expect_exact({.deliveries = 2, .assessments = 1, .vehicles = 5, .hazards = 4}, 63, 20, 0.2, 12);
+}
+/// Nothing is proven there but what is said: no start of an arc, tried or not, gives more.
+TEST(ExactAllocation, FreeAnglesAmongHazardsAndNearTheSite) {
+  expect_exact({.deliveries = 2,
+                .assessments = 1,
+                .vehicles = 5,
+                .hazards = 4,
+                .free_angles = true,
+                .extent_m = 3000.0},
+               73, 12, 0.2, 6);
+  expect_exact(
+      {.deliveries = 2, .assessments = 2, .vehicles = 6, .free_angles = true, .extent_m = 1500.0},
+      74, 12, 0.2, 3);
 }
 TEST(ExactAllocation, NearTheSiteWhereLengthsHaveGaps) {
   expect_exact({.deliveries = 2, .assessments = 1, .vehicles = 5, .extent_m = 1500.0}, 64, 20, 0.2,

@@ -2,16 +2,15 @@
 #include "allocation_table.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <functional>
 #include <numeric>
 #include <utility>
 
+#include "free_start.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/planning/arrival.hpp"
 #include "skein/planning/dubins_batch.hpp"
-#include "task_leg.hpp"
 
 namespace skein::planning {
 namespace {
@@ -23,21 +22,6 @@ constexpr int kTimingsMax = 64;       ///< moments tried for one choice of vehic
 
 Instant later(Instant start, double seconds) {
   return start + Duration{static_cast<Duration::rep>(std::ceil(seconds * 1e9))};
-}
-
-/// The least length >= `wanted_m` that can be flown; none within the range.
-std::optional<double> flyable_from(const AvoidanceParams& params, const Transit& transit,
-                                   double shortest_m, double wanted_m) {
-  if (transit.hazards.empty()) {
-    if (surely_flyable(params, transit, shortest_m, wanted_m)) return wanted_m;
-    const auto gap = length_gap(transit.from, transit.to, transit.radius_m);
-    if (gap && wanted_m > gap->low_m && wanted_m < gap->high_m) {
-      if (wanted_m > gap->high_m - kRounding_m) return wanted_m;
-      return gap->high_m <= transit.length_max_m ? std::optional{gap->high_m} : std::nullopt;
-    }
-  }
-  const auto least_m = least_length_from(params, transit, wanted_m);
-  return least_m ? std::optional{*least_m} : std::nullopt;
 }
 
 /// Candidates that turn on one radius and fly one kind of task to one and the same pose.
@@ -174,13 +158,17 @@ void AllocationTable::make_assessments() {
     return c.assess_radius_m;
   });
   std::vector<double> lengths_m(columns());
+  const bool any_free = std::any_of(rows_.begin() + static_cast<std::ptrdiff_t>(deliveries_),
+                                    rows_.end(), [this](const Row& row) { return is_free(row); });
+  for (const Alike& group : groups) {
+    for (std::size_t i = 0; any_free && i < group.columns.size(); ++i) {
+      make_free_arcs(group.columns[i]);
+    }
+  }
   for (std::size_t row = deliveries_; row < rows(); ++row) {
+    if (is_free(rows_[row])) continue;
     const ArcRequirement& arc = problem_->site.assessments[rows_[row].task.index];
     for (const Alike& group : groups) {
-      if (!arc.start_angle_rad) {
-        for (const std::size_t column : group.columns) make_free_arc(row, column);
-        continue;
-      }
       TaskPath task = arc_path(problem_->site, *arc.start_angle_rad, arc.dwell, group.extent_m, 1.0,
                                kAssessmentSense);
       group.lengths_to(task.entry, lengths_m);
@@ -193,31 +181,62 @@ void AllocationTable::make_assessments() {
   }
 }
 
+bool AllocationTable::is_free(const Row& row) const {
+  return row.task.kind == TaskKind::assess &&
+         !problem_->site.assessments[row.task.index].start_angle_rad;
+}
+
 /// As leg_to_arc, without hazards.
-void AllocationTable::make_free_arc(std::size_t row, std::size_t column) {
+void AllocationTable::make_free_arcs(std::size_t column) {
   const Candidate& vehicle = candidates_[column];
-  const ArcRequirement& arc = problem_->site.assessments[rows_[row].task.index];
-  std::array<TaskPath, kArcStarts> tasks;
-  std::array<double, kArcStarts> lengths_m{};
-  PoseBatch from;
-  PoseBatch to;
-  from.push_back(vehicle.pose);
-  to.reserve(tasks.size());
-  for (int i = 0; i < kArcStarts; ++i) {
-    TaskPath& task = tasks[static_cast<std::size_t>(i)];
-    task = arc_path(problem_->site, arc_start_rad(problem_->site, vehicle.pose, i), arc.dwell,
-                    vehicle.assess_radius_m, vehicle.speed_mps, kAssessmentSense);
-    to.push_back(task.entry);
+  const FreeStart start =
+      shortest_to_circle(vehicle.pose, vehicle.planning_radius_m, problem_->site.position,
+                         vehicle.assess_radius_m, kAssessmentSense);
+  for (std::size_t row = deliveries_; row < rows(); ++row) {
+    if (!is_free(rows_[row])) continue;
+    const ArcRequirement& arc = problem_->site.assessments[rows_[row].task.index];
+    const TaskPath task = arc_path(problem_->site, start.start_rad, arc.dwell,
+                                   vehicle.assess_radius_m, vehicle.speed_mps, kAssessmentSense);
+    // Around hazards all starts are looked at again: until then it is a bound.
+    const bool measured = problem_->hazards.empty();
+    set_pair(row, column, task, measured ? start.length_m : start.least_m);
+    if (measured) add_slack(row, column, start.length_m - start.least_m);
   }
-  shortest_dubins_lengths(from.columns(), to.columns(), vehicle.planning_radius_m, lengths_m);
-  const auto least = std::min_element(lengths_m.begin(), lengths_m.end());
-  set_pair(row, column, tasks[static_cast<std::size_t>(least - lengths_m.begin())], *least);
+}
+
+void AllocationTable::add_slack(std::size_t row, std::size_t column, double slack_m) {
+  if (!possible(row, column)) return;
+  const double seconds = slack_m * params_->time_margin / candidates_[column].speed_mps;
+  free_slack_s_ = std::max(free_slack_s_, seconds);
+}
+
+/// A plan whose assessments begin somewhat sooner, by other starts of their arcs, is one of these
+/// pairs once all of them wait for so long. J has no greater slope there.
+double AllocationTable::free_slack() const {
+  if (free_slack_s_ == 0.0) return 0.0;
+  double speeds_mps = 0.0;
+  for (std::size_t k = 0; k < assessments(); ++k) {
+    speeds_mps += candidates_[by_speed_[columns() - 1 - k]].speed_mps;
+  }
+  const double slope_per_s = reward_scale_ * assess_rewards_ * problem_->site.reward_decay_per_s +
+                             range_scale_ * speeds_mps +
+                             timing_scale_ * static_cast<double>(assessments());
+  return free_slack_s_ * slope_per_s;
+}
+
+bool AllocationTable::may_start_elsewhere(const std::vector<int>& column_of,
+                                          double assess_s) const {
+  for (std::size_t row = deliveries_; row < rows(); ++row) {
+    const std::size_t pair = index(row, static_cast<std::size_t>(column_of[row]));
+    if (!is_free(rows_[row]) || assess_s < least_s_[pair] || assess_s > greatest_s_[pair]) continue;
+    if (!open(row, static_cast<std::size_t>(column_of[row]), assess_s)) return true;
+  }
+  return false;
 }
 
 void AllocationTable::make_pairs() {
-  Pair pair;
-  pair.measured = problem_->hazards.empty();
-  pairs_.assign(rows() * columns(), pair);
+  pairs_.resize(rows() * columns());
+  for (Pair& pair : pairs_) pair.measured = problem_->hazards.empty();
   least_s_.assign(pairs_.size(), kInfinity);
   greatest_s_.assign(pairs_.size(), -kInfinity);
   make_deliveries();
@@ -263,17 +282,58 @@ bool AllocationTable::open(std::size_t row, std::size_t column, double common_s)
   return common_s < pairs_[i].refused_from_s || common_s >= pairs_[i].resumes_s;
 }
 
+const Departure& AllocationTable::departure(std::size_t column) {
+  if (departures_.empty()) departures_.resize(columns());
+  auto& its = departures_[column];
+  if (!its) {
+    its = std::make_unique<Departure>(departure_of(candidates_[column], problem_->hazards));
+  }
+  return *its;
+}
+
 /// Replaces the lower bound by the length around the hazards.
 void AllocationTable::measure(std::size_t row, std::size_t column) {
   Pair& pair = pairs_[index(row, column)];
   if (std::exchange(pair.measured, true) || !possible(row, column)) return;
-  const auto leg = leg_of(params_->avoidance, candidates_[column], problem_->site, rows_[row].task,
-                          problem_->hazards);
-  if (leg) {
-    set_pair(row, column, leg->task, leg->shortest_m);
-  } else {
+  const Candidate& vehicle = candidates_[column];
+  auto leg =
+      leg_of(params_->avoidance, vehicle, departure(column), problem_->site, rows_[row].task);
+  if (!leg) {
     least_s_[index(row, column)] = kInfinity;
+    return;
   }
+  set_pair(row, column, leg->task, leg->shortest_m);
+  add_slack(row, column, leg->slack_m);
+  if (!leg->around) return;
+  pair.lengths.emplace(transit_of(vehicle, leg->task, problem_->hazards), std::move(*leg->around));
+}
+
+/// The least length >= `wanted_m` that can be flown; none within the range.
+std::optional<double> AllocationTable::flyable_from(std::size_t row, std::size_t column,
+                                                    double wanted_m, Resumption resumption) {
+  Pair& pair = pairs_[index(row, column)];
+  const TaskPath task{pair.entry, {0.0, pair.run_m}};
+  const Transit transit = transit_of(candidates_[column], task, problem_->hazards);
+  const AvoidanceParams& params = params_->avoidance;
+  if (transit.hazards.empty()) {
+    if (surely_flyable(params, transit, pair.shortest_m, wanted_m)) return wanted_m;
+    const auto gap = length_gap(transit.from, transit.to, transit.radius_m);
+    if (gap && wanted_m > gap->low_m && wanted_m < gap->high_m) {
+      if (wanted_m > gap->high_m - kRounding_m) return wanted_m;
+      return gap->high_m <= transit.length_max_m ? std::optional{gap->high_m} : std::nullopt;
+    }
+  }
+  if (!pair.lengths) {
+    // The shortest way is a direct one.
+    const auto open_m = least_without_hazards(params, transit, pair.shortest_m, wanted_m);
+    if (open_m) return *open_m <= transit.length_max_m ? open_m : std::nullopt;
+    auto found = find_clear_path(params, transit.from, transit.to, transit.radius_m,
+                                 transit.hazards, departure(column).ways);
+    if (!found) return std::nullopt;
+    pair.lengths.emplace(transit, std::move(*found));
+  }
+  const double least_m = pair.lengths->none_before_m(wanted_m, resumption == Resumption::exactly);
+  return least_m < kInfinity ? std::optional{least_m} : std::nullopt;
 }
 
 void AllocationTable::measure_all() {
@@ -282,7 +342,17 @@ void AllocationTable::measure_all() {
   }
 }
 
-bool AllocationTable::verify(std::size_t row, std::size_t column, double common_s) {
+void AllocationTable::settle_deliveries(double delivery_s) {
+  for (std::size_t row = 0; row < deliveries_; ++row) {
+    for (std::size_t c = 0; c < columns(); ++c) {
+      if (pairs_[index(row, c)].resumes_s != delivery_s) continue;
+      (void)verify(row, c, delivery_s, Resumption::exactly);
+    }
+  }
+}
+
+bool AllocationTable::verify(std::size_t row, std::size_t column, double common_s,
+                             Resumption resumption) {
   measure(row, column);
   if (!open(row, column, common_s)) return false;
   Pair& pair = pairs_[index(row, column)];
@@ -290,19 +360,18 @@ bool AllocationTable::verify(std::size_t row, std::size_t column, double common_
   const Candidate& vehicle = candidates_[column];
   const TaskKind kind = rows_[row].task.kind;
   const TaskPath task{pair.entry, {0.0, pair.run_m}};
-  const Transit transit = transit_of(vehicle, task, problem_->hazards);
   const double wanted_m =
       transit_length_m(vehicle, kind, task, problem_->start, time_of(row, common_s));
-  const auto reachable_m = flyable_from(params_->avoidance, transit, pair.shortest_m, wanted_m);
+  const auto reachable_m = flyable_from(row, column, wanted_m, resumption);
   if (!reachable_m || *reachable_m > wanted_m) {
     const double resumes_s =
         reachable_m
             ? (*reachable_m + timed_run_m(kind, task)) / vehicle.speed_mps - rows_[row].offset_s
             : kInfinity;
-    // A gap that is met twice is one gap.
+    // A gap that is met twice is one gap, also at what was thought to be its end.
     const double until_s = std::max(resumes_s, std::nextafter(common_s, kInfinity));
-    pair.refused_from_s =
-        pair.resumes_s == until_s ? std::min(pair.refused_from_s, common_s) : common_s;
+    const bool same = pair.resumes_s == until_s || pair.resumes_s == common_s;
+    pair.refused_from_s = same ? std::min(pair.refused_from_s, common_s) : common_s;
     pair.resumes_s = until_s;
     return false;
   }
@@ -310,11 +379,16 @@ bool AllocationTable::verify(std::size_t row, std::size_t column, double common_
   return true;
 }
 
-bool AllocationTable::verify(const std::vector<int>& column_of, const Moments& at) {
+bool AllocationTable::verify(const std::vector<int>& column_of, const Moments& at,
+                             Resumption resumption) {
+  const auto column = [&](std::size_t row) { return static_cast<std::size_t>(column_of[row]); };
   bool all = true;
   for (std::size_t row = 0; row < rows(); ++row) {
-    const auto column = static_cast<std::size_t>(column_of[row]);
-    all = verify(row, column, moment_of(row, at)) && all;
+    measure(row, column(row));
+    all = all && open(row, column(row), moment_of(row, at));
+  }
+  for (std::size_t row = 0; row < rows() && all; ++row) {
+    all = verify(row, column(row), moment_of(row, at), resumption);
   }
   return all;
 }
@@ -400,6 +474,16 @@ double AllocationTable::bound_from(const Moments& at) const {
   return bound(at, {kInfinity, kInfinity}) + late * static_cast<double>(assessments());
 }
 
+/// What late assessments gain by a second of delay, over what the deliveries' rewards lose by it,
+/// which is the less the later they are; at the latest the assessments are on time.
+bool AllocationTable::waiting_pays(const Moments& at) const {
+  const double latest_s = delivery_before_s(at.assess_s);
+  const double beta = problem_->site.reward_decay_per_s;
+  return latest_s > at.delivery_s &&
+         timing_scale_ * static_cast<double>(assessments()) >
+             reward_scale_ * deliver_rewards_ * beta * std::exp(-beta * latest_s);
+}
+
 std::optional<double> AllocationTable::soonest(const std::vector<int>& column_of, std::size_t first,
                                                std::size_t last, double from_s) {
   double moment_s = from_s;
@@ -410,7 +494,7 @@ std::optional<double> AllocationTable::soonest(const std::vector<int>& column_of
     double next_s = moment_s;
     for (std::size_t row = first; row < last; ++row) {
       const auto column = static_cast<std::size_t>(column_of[row]);
-      if (verify(row, column, moment_s)) continue;
+      if (verify(row, column, moment_s, Resumption::exactly)) continue;
       const std::size_t pair = index(row, column);
       if (moment_s > greatest_s_[pair]) return std::nullopt;
       next_s =
@@ -437,7 +521,7 @@ std::optional<CoalitionPlan> AllocationTable::timed(const std::vector<int>& colu
     return plan;
   }
   const double on_time_value = value(column_of, on_time);
-  if (on_time_value > plan.value && verify(column_of, on_time)) {
+  if (on_time_value > plan.value && verify(column_of, on_time, Resumption::exactly)) {
     plan.at = on_time;
     plan.value = on_time_value;
   }

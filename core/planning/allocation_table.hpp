@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +14,8 @@
 #include "skein/planning/allocation.hpp"
 #include "skein/planning/assignment.hpp"
 #include "skein/planning/task_path.hpp"
+#include "task_leg.hpp"
+#include "transit_lengths.hpp"
 
 namespace skein::planning {
 
@@ -34,7 +38,12 @@ struct MethodResult {
   std::optional<CoalitionPlan> plan;
   double bound = std::numeric_limits<double>::infinity();  ///< no plan has a greater J
   bool proven = false;  ///< nothing was left out: the plan is the best by the method's own measure
+  bool cut = false;     ///< by the budget: it would have gone on
 };
+
+/// When a pair that is refused is said to be possible again: a moment at which it is, or, far
+/// quicker, one before which it is not; who asks at that moment is refused until a later one.
+enum class Resumption : std::uint8_t { exactly, at_the_earliest };
 
 /// Who can do what, and when: rows are the open tasks (deliveries, then assessments), columns the
 /// candidates by id. A pair is possible at a common moment from its `least_s` to its `greatest_s`,
@@ -73,11 +82,17 @@ class AllocationTable {
   [[nodiscard]] bool open(std::size_t row, std::size_t column, double common_s) const;
   /// True where the vehicle has a path of exactly the length that the moment asks for. Otherwise
   /// the pair is no longer open at that moment.
-  [[nodiscard]] bool verify(std::size_t row, std::size_t column, double common_s);
+  [[nodiscard]] bool verify(std::size_t row, std::size_t column, double common_s,
+                            Resumption resumption);
   /// As verify, for every row of the plan.
-  [[nodiscard]] bool verify(const std::vector<int>& column_of, const Moments& at);
+  [[nodiscard]] bool verify(const std::vector<int>& column_of, const Moments& at,
+                            Resumption resumption);
   /// Makes every least_s exact.
   void measure_all();
+  /// May J be greater for deliveries later than those at `delivery_s`, with the same vehicles?
+  [[nodiscard]] bool waiting_pays(const Moments& at) const;
+  /// Whichever delivery was said to be possible again at this moment is, or is refused.
+  void settle_deliveries(double delivery_s);
 
   [[nodiscard]] double moment_of(std::size_t row, const Moments& at) const {
     return is_delivery(row) ? at.delivery_s : at.assess_s;
@@ -105,6 +120,12 @@ class AllocationTable {
   /// As bound, for all plans with moments not before these; never grows with either moment.
   [[nodiscard]] double bound_from(const Moments& at) const;
 
+  /// What J may be greater by for arcs that begin elsewhere than these pairs, where their start is
+  /// free, as far as lengths were measured; ranges and gaps aside.
+  [[nodiscard]] double free_slack() const;
+  /// Was an assessment of the plan refused by a gap that an arc from another start may not have?
+  [[nodiscard]] bool may_start_elsewhere(const std::vector<int>& column_of, double assess_s) const;
+
   /// Completes a choice of vehicles to a plan at its best moments, verified; nothing where these
   /// vehicles cannot. `soonest`: the earliest moments, even where later deliveries had a greater J.
   [[nodiscard]] std::optional<CoalitionPlan> timed(const std::vector<int>& column_of,
@@ -130,6 +151,7 @@ class AllocationTable {
     double verified_s = -1.0;  ///< the moment last found possible
     double refused_from_s = std::numeric_limits<double>::infinity();  ///< no path has the length
     double resumes_s = -std::numeric_limits<double>::infinity();      ///< until here
+    std::optional<TransitLengths> lengths;  ///< where hazards are in reach, once it was needed
   };
 
   AllocationTable(const AllocationParams& params, const AllocationProblem& problem);
@@ -137,10 +159,15 @@ class AllocationTable {
   void make_pairs();
   void make_deliveries();
   void make_assessments();
-  void make_free_arc(std::size_t row, std::size_t column);
+  void make_free_arcs(std::size_t column);
+  [[nodiscard]] bool is_free(const Row& row) const;
+  void add_slack(std::size_t row, std::size_t column, double slack_m);
   void make_bounds();
   void set_pair(std::size_t row, std::size_t column, const TaskPath& task, double shortest_m);
   void measure(std::size_t row, std::size_t column);
+  [[nodiscard]] const Departure& departure(std::size_t column);
+  [[nodiscard]] std::optional<double> flyable_from(std::size_t row, std::size_t column,
+                                                   double wanted_m, Resumption resumption);
   [[nodiscard]] std::optional<Error> missing(TaskKind kind, std::size_t first,
                                              std::size_t last) const;
   [[nodiscard]] std::size_t index(std::size_t row, std::size_t column) const {
@@ -159,9 +186,11 @@ class AllocationTable {
   std::vector<double> least_s_;
   std::vector<double> greatest_s_;
   std::vector<Pair> pairs_;
+  std::vector<std::unique_ptr<Departure>> departures_;  ///< by column, once it was needed
 
   double first_moment_s_ = 0.0;
   double last_offset_s_ = 0.0;
+  double free_slack_s_ = 0.0;  ///< what a start that was not looked at may be sooner by
   /// J = reward_scale_ (deliver_rewards_ exp(-beta t_d) + assess_rewards_ exp(-beta t_a))
   ///   + range_scale_ (range_m_ - metres) - timing_scale_ (t_a - required) assessments
   double reward_scale_ = 0.0;

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "avoidance_margin.hpp"
 #include "skein/base/angles.hpp"
 #include "skein/base/assert.hpp"
 #include "skein/planning/dubins.hpp"
+#include "transit_lengths.hpp"
 
 namespace skein::planning {
 namespace {
@@ -49,6 +49,26 @@ double discomfort(const Path& path, const Pose2& to, double radius_m) {
   return turned + strays / radius_m;
 }
 
+/// Lengths that cannot be flown, as far as it is known.
+struct Unflyable {
+  double from_m;
+  double below_m;              ///< to here
+  double above_m = kInfinity;  ///< this one can
+  int scans = 0;
+  bool without_end = false;
+
+  [[nodiscard]] bool is_settled() const { return without_end || above_m - below_m <= kGapStep_m; }
+  /// None from from_m on can be flown that is less.
+  [[nodiscard]] double end_m() const {
+    if (without_end) return kInfinity;
+    return is_settled() ? above_m : below_m;
+  }
+  [[nodiscard]] bool has(double length_m) const {
+    if (length_m < from_m) return false;
+    return is_settled() ? length_m < end_m() : length_m <= below_m + kExact_m;
+  }
+};
+
 /// One request: the shortest clear path, and the search for longer ones.
 class Search {
  public:
@@ -60,12 +80,16 @@ class Search {
   [[nodiscard]] double shortest_m() const { return shortest_m_; }
   /// Independent of length_max_m.
   [[nodiscard]] std::optional<Path> find(double length_m);
-  /// The least reachable length above one that is not, up to `limit_m`.
-  [[nodiscard]] std::optional<double> next_after(double length_m, double limit_m);
+  /// Does find give a path? Any will do, and what is quick to try is tried first.
+  [[nodiscard]] bool reaches(double length_m);
+  /// One step towards the least length above the gap that can be flown, up to `limit_m`.
+  void narrow(Unflyable& gap, double limit_m);
 
  private:
   void find_bases();
+  void begin(double length_m);
   void consider(const Path& path);
+  [[nodiscard]] bool done() const { return any_will_do_ && best_; }
   void larger_radii();
   void unequal_radii();
   void bends();
@@ -81,6 +105,7 @@ class Search {
   std::vector<Path> bases_;  ///< clear paths of the least radius, to be lengthened
 
   double wanted_m_ = 0.0;
+  bool any_will_do_ = false;
   std::optional<Path> best_;
   double best_discomfort_ = kInfinity;
 };
@@ -102,8 +127,8 @@ void Search::find_bases() {
 }
 
 void Search::consider(const Path& path) {
-  if (std::abs(path.length_m() - wanted_m_) > kExact_m) return;
-  const double value = discomfort(path, transit_.to, transit_.radius_m);
+  if (done() || std::abs(path.length_m() - wanted_m_) > kExact_m) return;
+  const double value = any_will_do_ ? 0.0 : discomfort(path, transit_.to, transit_.radius_m);
   if (value >= best_discomfort_) return;
   if (!is_clear(path, transit_.hazards)) return;
   best_ = path;
@@ -123,7 +148,7 @@ void Search::solve(double low, double high, bool geometric, const Family& family
     return p->length_m() + extra - wanted_m_;
   };
   std::optional<double> before;
-  for (int i = 0; i <= kSamples; ++i) {
+  for (int i = 0; i <= kSamples && !done(); ++i) {
     const auto [path, extra] = family.at(parameter(i));
     const std::optional<double> value = path ? std::optional{excess(path, extra)} : std::nullopt;
     if (before && value && (*before <= 0.0) != (*value <= 0.0)) {
@@ -242,7 +267,7 @@ void Search::bends() {
   const double r = transit_.radius_m;
   for (const Path& base : bases_) {
     const double extra = wanted_m_ - base.length_m();
-    if (extra < 0.0) continue;
+    if (extra < 0.0 || done()) continue;
     for (std::size_t i = 0; i < base.segments.size(); ++i) {
       const Segment& piece = base.segments[i];
       if (piece.curvature_per_m != 0.0) continue;
@@ -264,7 +289,7 @@ void Search::loops() {
   for (const Path& base : bases_) {
     const double extra = wanted_m_ - base.length_m();
     const int most = static_cast<int>(std::min(64.0, std::floor(extra / (kTwoPi * r) + 1e-12)));
-    for (int count = 1; count <= most; ++count) {
+    for (int count = 1; count <= most && !done(); ++count) {
       const double circle_m = extra / count;
       const double radius_m = std::max(r, circle_m / kTwoPi);
       for (const double side : {1.0, -1.0}) {
@@ -331,13 +356,30 @@ void Search::leads() {
   }
 }
 
-std::optional<Path> Search::find(double length_m) {
-  if (length_m < shortest_m_ - kExact_m) return std::nullopt;
-  if (length_m <= shortest_m_ + kExact_m) return shortest_;
+void Search::begin(double length_m) {
   wanted_m_ = length_m;
   best_.reset();
   best_discomfort_ = kInfinity;
   for (const Path& base : bases_) consider(base);
+}
+
+bool Search::reaches(double length_m) {
+  if (length_m <= shortest_m_ + kExact_m) return length_m >= shortest_m_ - kExact_m;
+  any_will_do_ = true;
+  begin(length_m);
+  bends();
+  loops();
+  larger_radii();
+  unequal_radii();
+  leads();
+  any_will_do_ = false;
+  return best_.has_value();
+}
+
+std::optional<Path> Search::find(double length_m) {
+  if (length_m < shortest_m_ - kExact_m) return std::nullopt;
+  if (length_m <= shortest_m_ + kExact_m) return shortest_;
+  begin(length_m);
   larger_radii();
   bends();
   loops();
@@ -346,28 +388,28 @@ std::optional<Path> Search::find(double length_m) {
   return best_;
 }
 
-std::optional<double> Search::next_after(double length_m, double limit_m) {
+void Search::narrow(Unflyable& gap, double limit_m) {
   // A gap is no longer than one loop, but for hazards.
+  constexpr int kScansMax = 96;
   const double step_m = kTwoPi * transit_.radius_m / 24.0;
-  double below = length_m;
-  double above = length_m;
-  bool found = false;
-  for (int i = 0; i < 96 && !found && below < limit_m; ++i) {
-    below = above;
-    above = std::min(above + step_m, limit_m);
-    found = find(above).has_value();
+  if (gap.above_m < kInfinity) {
+    const double middle = (gap.below_m + gap.above_m) / 2.0;
+    (reaches(middle) ? gap.above_m : gap.below_m) = middle;
+    return;
   }
-  if (!found) return std::nullopt;
+  gap.without_end = gap.scans++ == kScansMax || gap.below_m >= limit_m;
+  if (gap.without_end) return;
+  const double next_m = std::min(gap.below_m + step_m, limit_m);
+  if (!reaches(next_m)) {
+    gap.below_m = next_m;
+    return;
+  }
+  gap.above_m = next_m;
   // The end of a gap is often the length of a word itself; hit it exactly.
   for (const Path& base : bases_) {
     const double exact = base.length_m();
-    if (exact > below && exact < above && find(exact)) above = exact;
+    if (exact > gap.below_m && exact < gap.above_m && reaches(exact)) gap.above_m = exact;
   }
-  while (above - below > kGapStep_m) {
-    const double middle = (below + above) / 2.0;
-    (find(middle) ? above : below) = middle;
-  }
-  return above;
 }
 
 /// For what follows the way out of the hazards around the start. `shortest` must outlive it.
@@ -387,7 +429,8 @@ Error out_of_range(double length_m, double length_max_m) {
                metres(length_max_m)};
 }
 
-/// The least length from `length_m` on that can be flown, if no hazard is in reach of it.
+}  // namespace
+
 std::optional<double> least_without_hazards(const AvoidanceParams& params, const Transit& transit,
                                             double shortest_m, double length_m) {
   const double least_m = std::max(length_m, shortest_m);
@@ -408,8 +451,6 @@ std::optional<double> least_without_hazards(const AvoidanceParams& params, const
   }
   return gap->high_m;
 }
-
-}  // namespace
 
 Result<Path> path_of_length(const AvoidanceParams& params, const Transit& transit,
                             double length_m) {
@@ -469,6 +510,54 @@ bool surely_flyable(const AvoidanceParams& params, const Transit& transit, doubl
   return least_m && *least_m <= length_m;
 }
 
+struct TransitLengths::Found {
+  Found(const Transit& transit, ClearPath way)
+      : shortest{std::move(way)},
+        search{search_for(transit, shortest)},
+        out_m{shortest.way_out.length_m()},
+        least_m{out_m + search.shortest_m()} {}
+
+  ClearPath shortest;
+  Search search;  ///< beyond the way out
+  double out_m;
+  double least_m;
+  std::optional<Unflyable> gap;  ///< the last that was met
+};
+
+TransitLengths::TransitLengths(const Transit& transit, ClearPath shortest)
+    : length_max_m_{transit.length_max_m},
+      found_{std::make_unique<Found>(transit, std::move(shortest))} {}
+TransitLengths::TransitLengths(TransitLengths&&) noexcept = default;
+TransitLengths& TransitLengths::operator=(TransitLengths&&) noexcept = default;
+TransitLengths::~TransitLengths() = default;
+
+double TransitLengths::none_before_m(double length_m, bool exactly) {
+  auto& [shortest, search, out_m, least_m, gap] = *found_;
+  const double wanted_m = std::max(length_m, least_m);
+  if (wanted_m > length_max_m_ + kExact_m) return kInfinity;
+  const double beyond_m = wanted_m - out_m;
+  if (!gap || !gap->has(beyond_m)) {
+    if (search.reaches(beyond_m)) return wanted_m;
+    if (gap && beyond_m > gap->below_m && beyond_m < gap->above_m) {
+      gap->below_m = beyond_m;
+    } else {
+      gap = Unflyable{beyond_m, beyond_m};
+    }
+  }
+  const auto is_enough = [&] { return !exactly && gap->end_m() > beyond_m + kExact_m; };
+  while (!gap->is_settled() && !is_enough()) search.narrow(*gap, length_max_m_ - out_m);
+  return out_m + gap->end_m();
+}
+
+Result<double> TransitLengths::least_from(double length_m) {
+  const double wanted_m = std::max(length_m, found_->least_m);
+  if (wanted_m > length_max_m_ + kExact_m) return out_of_range(wanted_m, length_max_m_);
+  const double least_m = none_before_m(length_m, true);
+  if (least_m < kInfinity) return least_m;
+  return Error{"No path of " + metres(length_m) + " or longer was found within " +
+               metres(length_max_m_)};
+}
+
 Result<double> least_length_from(const AvoidanceParams& params, const Transit& transit,
                                  double length_m) {
   SKEIN_ASSERT(transit.radius_m > 0.0);
@@ -478,19 +567,10 @@ Result<double> least_length_from(const AvoidanceParams& params, const Transit& t
     if (*least_m <= transit.length_max_m + kExact_m) return *least_m;
     return out_of_range(*least_m, transit.length_max_m);
   }
-  const auto shortest =
+  auto shortest =
       find_clear_path(params, transit.from, transit.to, transit.radius_m, transit.hazards);
   if (!shortest) return shortest.error();
-  const double out_m = shortest->way_out.length_m();
-  Search search = search_for(transit, *shortest);
-  const double least = std::max(length_m, out_m + search.shortest_m());
-  if (least > transit.length_max_m + kExact_m) return out_of_range(least, transit.length_max_m);
-  if (search.find(least - out_m)) return least;
-  if (const auto next = search.next_after(least - out_m, transit.length_max_m - out_m)) {
-    return out_m + *next;
-  }
-  return Error{"No path of " + metres(length_m) + " or longer was found within " +
-               metres(transit.length_max_m)};
+  return TransitLengths{transit, std::move(*shortest)}.least_from(length_m);
 }
 
 }  // namespace skein::planning

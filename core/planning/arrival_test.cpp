@@ -10,6 +10,7 @@
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
 #include "skein/planning/dubins.hpp"
+#include "transit_lengths.hpp"
 
 namespace skein::planning {
 namespace {
@@ -191,6 +192,44 @@ TEST(PathOfLength, AmongHazards) {
   }
   EXPECT_GT(asked, 145);
   EXPECT_GT(met, asked * 95 / 100);
+}
+
+/// Who asks for the end of a gap step by step comes to the one that is found at once, and a path of
+/// that length can be flown. Hazards around both ends make gaps longer.
+TEST(TransitLengths, StepsOfAGapLeadToItsEnd) {
+  Random random{17};
+  int ended = 0;
+  int steps = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Pose2 from = random_pose(random, 600.0);
+    const Pose2 to = random_pose(random, 600.0);
+    std::vector<Hazard> hazards;
+    for (std::uint16_t k = 1; k <= 6; ++k) {
+      const Vec2 centre = Vec2{300.0, 300.0} + 700.0 * unit_vector(k * kTwoPi / 6.0);
+      hazards.push_back({HazardId{k}, centre, 200.0});
+    }
+    const Transit transit{from, to, kRadius_m, 5000.0, hazards};
+    auto found = find_clear_path({}, from, to, kRadius_m, hazards);
+    if (!found) continue;
+    TransitLengths lengths{transit, std::move(*found)};
+    const double wanted_m =
+        shortest_dubins_length(from, to, kRadius_m) + random.uniform(0.0, 1000.0);
+    const auto at_once = least_length_from({}, transit, wanted_m);
+    double length_m = wanted_m;
+    double before_m = 0.0;
+    for (; length_m != before_m && std::isfinite(length_m); ++steps) {
+      before_m = length_m;
+      length_m = lengths.none_before_m(before_m, false);
+      ASSERT_GE(length_m, before_m);
+    }
+    ASSERT_EQ(std::isfinite(length_m), at_once.ok()) << i;
+    if (!at_once || length_m == wanted_m) continue;
+    ++ended;
+    EXPECT_NEAR(length_m, *at_once, 2e-3) << i;
+    EXPECT_TRUE(path_of_length({}, transit, length_m).ok()) << i;
+  }
+  EXPECT_GE(ended, 5);
+  EXPECT_GE(steps, 5 * ended);
 }
 
 }  // namespace

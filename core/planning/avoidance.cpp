@@ -174,19 +174,23 @@ Path way_out(const Pose2& from, double radius_m, double side, std::span<const Ha
 
 }  // namespace
 
+WaysOut ways_out(const Pose2& from, double radius_m, std::span<const Hazard> hazards) {
+  if (hazard_around(from.position(), hazards) == nullptr) return std::nullopt;
+  std::array<Path, 2> ways = {way_out(from, radius_m, 1.0, hazards),
+                              way_out(from, radius_m, -1.0, hazards)};
+  if (ways[1].length_m() < ways[0].length_m()) std::swap(ways[0], ways[1]);
+  return ways;
+}
+
 Result<ClearPath> find_clear_path(const AvoidanceParams& params, const Pose2& from, const Pose2& to,
-                                  double radius_m, std::span<const Hazard> hazards) {
+                                  double radius_m, std::span<const Hazard> hazards,
+                                  const WaysOut& ways) {
   SKEIN_ASSERT(radius_m > 0.0 && params.kappa > 1.0);
   if (const Hazard* around = hazard_around(to.position(), hazards)) {
     return Error{"The goal " + place(to) + " lies inside " + name(*around)};
   }
-  if (hazard_around(from.position(), hazards) == nullptr) {
-    return find_from_outside(params, from, to, radius_m, hazards);
-  }
-  std::array<Path, 2> ways = {way_out(from, radius_m, 1.0, hazards),
-                              way_out(from, radius_m, -1.0, hazards)};
-  if (ways[1].length_m() < ways[0].length_m()) std::swap(ways[0], ways[1]);
-  for (const Path& way : ways) {
+  if (!ways) return find_from_outside(params, from, to, radius_m, hazards);
+  for (const Path& way : *ways) {
     auto rest = find_from_outside(params, way.end(), to, radius_m, hazards);
     if (!rest) continue;
     rest->way_out = way;
@@ -194,7 +198,12 @@ Result<ClearPath> find_clear_path(const AvoidanceParams& params, const Pose2& fr
   }
   return Error{"The start " + place(from) + " lies inside " +
                name(*hazard_around(from.position(), hazards)) + ". " +
-               barred(ways[0].end(), to, radius_m, hazards).message};
+               barred(ways->front().end(), to, radius_m, hazards).message};
+}
+
+Result<ClearPath> find_clear_path(const AvoidanceParams& params, const Pose2& from, const Pose2& to,
+                                  double radius_m, std::span<const Hazard> hazards) {
+  return find_clear_path(params, from, to, radius_m, hazards, ways_out(from, radius_m, hazards));
 }
 
 const Hazard* first_entered(const Path& path, std::span<const Hazard> hazards) {

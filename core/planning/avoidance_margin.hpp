@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,6 +22,16 @@ struct ClearPath {
   std::vector<Hazard> circles;
 };
 
+/// The ways out of the hazards around a start, to either side, the shorter first; none where it
+/// lies in none.
+using WaysOut = std::optional<std::array<Path, 2>>;
+[[nodiscard]] WaysOut ways_out(const Pose2& from, double radius_m, std::span<const Hazard> hazards);
+
+/// `ways` are those out of `from`: who asks for many goals works them out once.
+[[nodiscard]] Result<ClearPath> find_clear_path(const AvoidanceParams& params, const Pose2& from,
+                                                const Pose2& to, double radius_m,
+                                                std::span<const Hazard> hazards,
+                                                const WaysOut& ways);
 [[nodiscard]] Result<ClearPath> find_clear_path(const AvoidanceParams& params, const Pose2& from,
                                                 const Pose2& to, double radius_m,
                                                 std::span<const Hazard> hazards);

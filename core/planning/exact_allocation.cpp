@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace skein::planning {
 namespace {
@@ -27,6 +28,7 @@ class Sweep {
   [[nodiscard]] bool solve(const Moments& at);
   [[nodiscard]] bool waits(const Moments& at) const;
   [[nodiscard]] std::optional<double> next_delivery(double after_s) const;
+  [[nodiscard]] std::optional<double> next_visit(double after_s);
   [[nodiscard]] std::optional<double> next_assessment(double after_s) const {
     return table_.next_moment(table_.deliveries(), table_.rows(), after_s);
   }
@@ -46,7 +48,7 @@ class Sweep {
   std::vector<int> column_of_;
   MethodResult result_;
   double left_out_ = -kInfinity;  ///< bound of what a gap may have hidden
-  bool cut_ = false;              ///< by the budget
+  bool grown_ = false;            ///< lengths were found to be greater than what least_ was made of
   std::uint64_t assignments_ = 0;
 };
 
@@ -102,14 +104,16 @@ bool Sweep::solve(const Moments& at) {
     if (!solver_.least_sum(cost_, table_.columns(), column_of_)) return false;
     const double value = table_.value(column_of_, at);
     if (goal_ == Goal::value && !improves(value)) return true;
-    if (!table_.verify(column_of_, at)) {
-      if (waits(at)) left_out_ = std::max(left_out_, value);
+    if (!table_.verify(column_of_, at, Resumption::at_the_earliest)) {
+      grown_ = true;
+      if (waits(at) || table_.may_start_elsewhere(column_of_, at.assess_s))
+        left_out_ = std::max(left_out_, value);
       continue;
     }
     result_.plan = CoalitionPlan{column_of_, at, value};
     return true;
   }
-  cut_ = true;
+  result_.cut = true;
   return false;
 }
 
@@ -135,19 +139,38 @@ void Sweep::visit(double delivery_s) {
   std::optional<double> assess_s = soonest_assessments(delivery_s);
   while (assess_s) {
     if (exhausted()) {
-      cut_ = true;
+      result_.cut = true;
       return;
     }
     const Moments at{delivery_s, *assess_s};
+    bool solved = true;
     if (goal_ == Goal::earliest) {
-      if (solve(at)) return;
+      solved = solve(at);
+      if (solved) return;
     } else {
       if (!improves(table_.bound(at, {kInfinity, kInfinity}))) return;
-      if (improves(table_.bound(at, at))) (void)solve(at);
+      if (improves(table_.bound(at, at))) {
+        // Elsewhere no plan is better at the end of a gap than all are that could be flown in it.
+        if (table_.waiting_pays(at)) table_.settle_deliveries(delivery_s);
+        solved = solve(at);
+      }
     }
     if (table_.assessments() == 0) return;
     assess_s = next_assessment(*assess_s);
+    if (solved || !assess_s) continue;
+    const auto possible_s = soonest_assessments(delivery_s);
+    assess_s = possible_s ? std::optional{std::max(*assess_s, *possible_s)} : std::nullopt;
   }
+}
+
+/// The moment after `after_s` to be visited, once more is known of the lengths.
+std::optional<double> Sweep::next_visit(double after_s) {
+  const auto next_s = next_delivery(after_s);
+  if (!next_s || !std::exchange(grown_, false)) return next_s;
+  const auto least = least_moments(table_);
+  if (!least) return std::nullopt;
+  least_ = *least;
+  return std::max(*next_s, least_.delivery_s);
 }
 
 MethodResult Sweep::run() {
@@ -161,15 +184,15 @@ MethodResult Sweep::run() {
     const double bound = table_.bound_from({*delivery_s, least_.assess_s});
     if (result_.plan && (goal_ == Goal::earliest || !improves(bound))) break;
     visit(*delivery_s);
-    if (cut_) {
+    if (result_.cut) {
       unexplored = bound;
       break;
     }
-    delivery_s = next_delivery(*delivery_s);
+    delivery_s = next_visit(*delivery_s);
   }
   const double value = result_.plan ? result_.plan->value + kValueTolerance / 2.0 : -kInfinity;
   result_.bound = std::max({value, unexplored, left_out_});
-  result_.proven = !cut_ && left_out_ <= value;
+  result_.proven = !result_.cut && left_out_ <= value;
   return result_;
 }
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <span>
 
+#include "avoidance_margin.hpp"
 #include "skein/base/result.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/domain/site.hpp"
@@ -21,30 +23,44 @@ inline constexpr int kClockwise = -1;
 /// Every assessment of a site is flown in the same sense, so that vehicles on one circle keep their
 /// spacing.
 inline constexpr int kAssessmentSense = kCounterClockwise;
-inline constexpr int kArcStarts = 24;  ///< tried where the requirement leaves the start angle free
-
-/// The start angle of an arc that is tried as number `index`: the nearest point first, then round.
-[[nodiscard]] double arc_start_rad(const Site& site, const Pose2& from, int index);
-
 [[nodiscard]] Result<TaskPath> fixed_arc(const Site& site, double start_rad, Duration dwell,
                                          double arc_radius_m, double planning_radius_m,
                                          double speed_mps, int turn);
 
+/// From where a vehicle begins its ways to all tasks.
+struct Departure {
+  Departure(const Pose2& pose, double turn_radius_m, std::span<const Hazard> around)
+      : from{pose},
+        radius_m{turn_radius_m},
+        hazards{around},
+        ways{ways_out(pose, turn_radius_m, around)} {}
+
+  Pose2 from;
+  double radius_m;
+  std::span<const Hazard> hazards;
+  WaysOut ways;
+};
+
 struct Leg {
   TaskPath task;
   double shortest_m = std::numeric_limits<double>::infinity();  ///< to the task's entry
+  std::optional<ClearPath> around;  ///< the way of that length, where hazards were in reach
+  double slack_m = 0.0;             ///< what another start of an arc that is free may be nearer by
 };
 
 /// To the arc's start; the one that is reached soonest where the start angle is free.
-[[nodiscard]] Result<Leg> leg_to_arc(const AvoidanceParams& params, const Pose2& from,
-                                     double planning_radius_m, double arc_radius_m,
-                                     double speed_mps, const Site& site, const ArcRequirement& arc,
-                                     int turn, std::span<const Hazard> hazards);
+[[nodiscard]] Result<Leg> leg_to_arc(const AvoidanceParams& params, const Departure& departure,
+                                     double arc_radius_m, double speed_mps, const Site& site,
+                                     const ArcRequirement& arc, int turn);
 
-/// How the candidate flies the task, and the least that it takes, around every hazard.
+/// How the candidate flies the task, and the least that it takes, around every hazard. The
+/// departure is the candidate's.
 [[nodiscard]] Result<Leg> leg_of(const AvoidanceParams& params, const Candidate& vehicle,
-                                 const Site& site, const TaskId& task,
-                                 std::span<const Hazard> hazards);
+                                 const Departure& departure, const Site& site, const TaskId& task);
+[[nodiscard]] inline Departure departure_of(const Candidate& vehicle,
+                                            std::span<const Hazard> hazards) {
+  return {vehicle.pose, vehicle.planning_radius_m, hazards};
+}
 
 /// What of the run lies before the moment that the task's time refers to.
 [[nodiscard]] double timed_run_m(TaskKind kind, const TaskPath& task);

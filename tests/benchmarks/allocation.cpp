@@ -69,30 +69,32 @@ AllocationProblem random_problem(Random& random, std::size_t vehicles, std::size
   return problem;
 }
 
-std::vector<AllocationProblem> random_problems(std::size_t vehicles, std::size_t hazards) {
-  Random random{1};
+std::vector<AllocationProblem> random_problems(std::size_t vehicles, std::size_t hazards,
+                                               std::uint64_t seed = 1, int count = kProblems) {
+  Random random{seed};
   std::vector<AllocationProblem> problems;
-  problems.reserve(kProblems);
-  for (int i = 0; i < kProblems; ++i) problems.push_back(random_problem(random, vehicles, hazards));
+  problems.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) problems.push_back(random_problem(random, vehicles, hazards));
   return problems;
 }
 
-/// Of one award, the best of five; the median over the problems.
-double median_us(const AllocationParams& params, const std::vector<AllocationProblem>& problems) {
+/// Of one award each, the best of `runs`; sorted.
+std::vector<double> times_us(const AllocationParams& params,
+                             const std::vector<AllocationProblem>& problems, int runs) {
   using Clock = std::chrono::steady_clock;
-  std::vector<double> times_us;
+  std::vector<double> all_us;
   for (const auto& problem : problems) {
     double least_us = 1e9;
-    for (int run = 0; run < 5; ++run) {
+    for (int run = 0; run < runs; ++run) {
       const auto begun = Clock::now();
       benchmark::DoNotOptimize(skein::planning::allocate(params, problem));
       const std::chrono::duration<double, std::micro> took = Clock::now() - begun;
       least_us = std::min(least_us, took.count());
     }
-    times_us.push_back(least_us);
+    all_us.push_back(least_us);
   }
-  std::sort(times_us.begin(), times_us.end());
-  return times_us[times_us.size() / 2];
+  std::sort(all_us.begin(), all_us.end());
+  return all_us;
 }
 
 /// The whole award, with its table of lengths.
@@ -115,10 +117,31 @@ void award(benchmark::State& state, AllocationMethod method, std::size_t hazards
     benchmark::DoNotOptimize(skein::planning::allocate(params, problems[i]));
     i = (i + 1) % problems.size();
   }
-  state.counters["median_us"] = median_us(params, problems);
+  state.counters["median_us"] = times_us(params, problems, 5)[kProblems / 2];
   state.counters["J"] = value;
   state.counters["deliver_s"] = first_s;
   state.counters["proven"] = static_cast<double>(proven) / kProblems;
+}
+
+/// How long awards take that are not tuned for: 3000 problems of another seed.
+void award_tail(benchmark::State& state) {
+  constexpr int kMany = 3000;
+  const auto problems = random_problems(32, static_cast<std::size_t>(state.range(0)), 8, kMany);
+  const AllocationParams params;
+  int proven = 0;
+  while (state.KeepRunningBatch(1)) {
+    proven = 0;
+    for (const auto& problem : problems) {
+      const auto plan = skein::planning::allocate(params, problem);
+      proven += plan && plan->proven ? 1 : 0;
+    }
+    const auto all_us = times_us(params, problems, 3);
+    state.counters["p50_us"] = all_us[kMany / 2];
+    state.counters["p95_us"] = all_us[kMany * 95 / 100];
+    state.counters["p99_us"] = all_us[kMany * 99 / 100];
+    state.counters["worst_us"] = all_us.back();
+  }
+  state.counters["proven"] = static_cast<double>(proven) / kMany;
 }
 
 /// J as a share of the exact one, mean and least, after so many microseconds.
@@ -271,6 +294,9 @@ AWARD(earliest);
 AWARD(colony);
 AWARD(polynomial);
 AWARD(greedy);
+
+// Hazards.
+BENCHMARK(award_tail)->Name("award_tail/skein")->Arg(0)->Arg(4)->Iterations(1)->Unit(kMillisecond);
 
 // Microseconds allowed.
 BENCHMARK(colony_in_time)

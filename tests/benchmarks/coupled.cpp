@@ -23,6 +23,9 @@ using skein::planning::PlanningBudget;
 
 constexpr std::uint64_t kInstances = 20;
 constexpr std::uint64_t kSeeds = 5;  ///< of a search, for each instance
+/// Those that nothing was tuned on.
+constexpr std::uint64_t kFresh = 8900;
+constexpr std::uint64_t kFreshInstances = 100;
 
 /// Seconds of this process on the processor: the machine may be busy with others.
 double cpu_s() {
@@ -94,14 +97,15 @@ void prove(benchmark::State& state, CoupledDraw draw, Criterion criterion, bool 
 }
 
 /// Ruin and recreate for so long, against the proven optimum.
-void search(benchmark::State& state, CoupledDraw draw, Criterion criterion, double seconds) {
+void search(benchmark::State& state, CoupledDraw draw, Criterion criterion, double seconds,
+            std::uint64_t first, std::uint64_t instances) {
   Losses found;
   double steps = 0.0;
   double runs = 0.0;
-  std::vector<std::optional<double>> best(kInstances);
-  while (state.KeepRunningBatch(kInstances * kSeeds)) {
-    for (std::uint64_t k = 0; k < kInstances; ++k) {
-      const CoupledProblem problem = instance(k, draw, criterion, false);
+  std::vector<std::optional<double>> best(instances);
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(instances * kSeeds))) {
+    for (std::uint64_t k = 0; k < instances; ++k) {
+      const CoupledProblem problem = instance(first + k, draw, criterion, false);
       if (!best[k]) {
         state.PauseTiming();
         const auto exact = branch_and_bound(problem, seconds_from_now(60.0));
@@ -176,7 +180,10 @@ constexpr std::array kCriteria{NamedCriterion{"value", Criterion::value},
       const std::string end = std::string{"/"} + name + "_" + size;
       add("prove/skein" + end, prove, draw, by, false);
       add("prove_flyable/skein" + end, prove, draw, by, true);
-      add("search_10ms/skein" + end, search, draw, by, 0.010);
+      add("search_10ms/skein" + end, search, draw, by, 0.010, std::uint64_t{0}, kInstances);
+      if (by == Criterion::makespan) {
+        add("fresh_10ms/skein" + end, search, draw, by, 0.010, kFresh, kFreshInstances);
+      }
     }
     CoupledDraw draw;
     draw.vehicles = 56;

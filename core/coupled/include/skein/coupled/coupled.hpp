@@ -157,7 +157,8 @@ inline constexpr double kCoupledTolerance = 1e-9;
 
 /// Ruin and recreate (Schrimpf 2000; operators chosen adaptively, Ropke and Pisinger 2006): tasks
 /// are taken out of the plan and put back where they cost least; a step is one such change.
-/// Anytime: more steps never give a worse plan. The same generator gives the same plan.
+/// Anytime: more steps never give a worse plan. The same generator gives the same plan. A makespan
+/// of up to twelve tasks is mostly proven by a branch and bound in between, which ends the search.
 [[nodiscard]] Result<CoupledPlan> ruin_and_recreate(const CoupledProblem& problem, Random& random,
                                                     const PlanningBudget& budget);
 
