@@ -22,6 +22,7 @@ namespace {
 constexpr std::array kDelays = {0.0, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.035, 0.05, 0.075,
                                 0.1, 0.15,   0.2,   0.3,   0.4,   0.5,  0.7,  1.0,   1.5,  2.0};
 constexpr int kRefinements = 2;
+constexpr std::size_t kTrackSamples = 64;
 /// A base route so near to its length needs no detour.
 constexpr double kExact_m = 1e-6;
 /// Corridors that gave a route, after which no other is tried.
@@ -136,6 +137,7 @@ class Planner {
                      " has no route to the site that its turns, waypoints and range allow"};
       }
       const double offset = v.arrival_offset_s;
+      latest_offset_s_ = std::max(latest_offset_s_, offset);
       plan_.bound_s = std::max(plan_.bound_s, bounds_.back() / v.speed_mps - offset);
       plan_.latest_s = std::min(plan_.latest_s, v.range_m / v.speed_mps - offset);
       shortest_.push_back(std::max(bases_.back().front().length_m, climb_length_m(problem_, v)));
@@ -149,6 +151,10 @@ class Planner {
     return {};
   }
 
+  /// Of the routes' tracks: the last to arrive has kTrackSamples.
+  [[nodiscard]] double step_s(double arrival_s) const {
+    return (arrival_s + latest_offset_s_) / static_cast<double>(kTrackSamples);
+  }
   [[nodiscard]] bool spent() const { return plan_.evaluations >= params_.evaluations_all; }
 
   /// Who stood in the way most often, and what of.
@@ -179,8 +185,9 @@ class Planner {
   }
 
   /// Routes of everybody at that common time, in `found_`. Who finds none goes first from then on,
-  /// also at later times.
+  /// also at later times; of the others, whose route is in nobody's way keeps it.
   bool plan_at(double arrival_s) {
+    kept_.assign(count(), {});
     const std::size_t attempts = 1 + std::min(params_.reorders, count() - 1);
     for (std::size_t attempt = 0; attempt < attempts; ++attempt) {
       if (attempt > 0 && plan_.evaluations >= allotted_) return false;
@@ -199,37 +206,51 @@ class Planner {
     std::vector<std::vector<Vec2>> routes(count());
     for (std::size_t k = 0; k < order.size(); ++k) {
       const std::size_t i = order[k];
-      auto waypoints = plan_vehicle(i, arrival_s, others);
+      auto waypoints = still_clear(i, arrival_s, others) ? std::optional{kept_[i]}
+                                                         : plan_vehicle(i, arrival_s, others);
       if (params_.go_on && !params_.go_on({arrival_s, k, plan_.evaluations})) cancelled_ = true;
       if (!waypoints || cancelled_) return k;
       const auto path = fly_by_path(*waypoints, vehicle(i).turn_radius_m);
       SKEIN_ASSERT(path.ok());
-      others.emplace_back(*path, vehicle(i), problem_.rules);
-      routes[i] = std::move(*waypoints);
+      others.emplace_back(*path, vehicle(i), problem_.rules, step_s(arrival_s));
+      kept_[i] = routes[i] = std::move(*waypoints);
     }
     found_ = std::move(routes);
     found_s_ = arrival_s;
     return order.size();
   }
 
+  /// It has a route from another order at that time, which is in the way of nobody in this one.
+  [[nodiscard]] bool still_clear(std::size_t i, double arrival_s,
+                                 const std::vector<TimedRoute>& others) const {
+    if (kept_[i].empty()) return false;
+    const std::vector<char> none_fresh(kept_[i].size(), 0);
+    return RouteJudge{problem_, vehicle(i), circles_, others, step_s(arrival_s)}.judge(
+               kept_[i], none_fresh) < RouteJudge::kInfeasible;
+  }
+
   std::optional<std::vector<Vec2>> plan_vehicle(std::size_t i, double arrival_s,
                                                 const std::vector<TimedRoute>& others) {
     const RouteVehicle& v = vehicle(i);
     const double target = v.speed_mps * (arrival_s + v.arrival_offset_s);
-    const RouteJudge judge{problem_, v, circles_, others};
+    const RouteJudge judge{problem_, v, circles_, others, step_s(arrival_s)};
     std::vector<Vec2> best;
     double value = RouteJudge::kInfeasible;
     nearest_ = std::numeric_limits<double>::infinity();
-    std::size_t good = 0;
-    // Those that need to be lengthened least, and in turn those that leave most room to choose
-    // where.
-    std::size_t low = 0;
-    std::size_t high = bases_[i].size();
-    while (high > 0 && bases_[i][high - 1].length_m > target + kExact_m) --high;
-    for (std::size_t k = 0; low < high && good < kEnough; ++k) {
-      if (k >= params_.corridors_tried * (good > 0 ? 1 : kStubborn) || spent()) break;
-      const BaseRoute& base = k % 2 == 0 ? bases_[i][--high] : bases_[i][low++];
-      if (lengthen(base, v, target, judge, value, best)) ++good;
+    for (const bool stubborn : {false, true}) {
+      // Those that need to be lengthened least, and in turn those that leave most room to choose
+      // where.
+      std::size_t good = 0;
+      std::size_t low = 0;
+      std::size_t high = bases_[i].size();
+      while (high > 0 && bases_[i][high - 1].length_m > target + kExact_m) --high;
+      for (std::size_t k = 0; low < high && good < kEnough; ++k) {
+        const bool more = stubborn && good == 0;
+        if (k >= params_.corridors_tried * (more ? kStubborn : 1) || spent()) break;
+        const BaseRoute& base = k % 2 == 0 ? bases_[i][--high] : bases_[i][low++];
+        if (lengthen(base, v, target, judge, stubborn, value, best)) ++good;
+      }
+      if (good > 0) break;
     }
     if (!best.empty()) return best;
     if (std::isinf(nearest_) && spent()) return std::nullopt;  // it was never its turn
@@ -238,9 +259,9 @@ class Planner {
   }
 
   /// True where the base route could be lengthened within all rules; a better one than `value` is
-  /// kept.
+  /// kept. Most that can be so are soon: only the stubborn go on while others are in the way.
   bool lengthen(const BaseRoute& base, const RouteVehicle& v, double target,
-                const RouteJudge& judge, double& value, std::vector<Vec2>& best) {
+                const RouteJudge& judge, bool stubborn, double& value, std::vector<Vec2>& best) {
     const bool exact = target - base.length_m <= kExact_m;
     const Extension extension{base, v.turn_radius_m, exact ? base.length_m : target};
     std::vector<Vec2> waypoints;
@@ -252,9 +273,9 @@ class Planner {
     const SearchSpace space{Extension::box(), {}};
     DifferentialEvolutionParams evolution;
     evolution.population = params_.population;
-    const std::uint64_t evaluations = exact ? 1 : params_.evaluations;
     const auto smooth =
         static_cast<std::uint64_t>(kSmoothShare * static_cast<double>(params_.evaluations));
+    const std::uint64_t evaluations = exact ? 1 : stubborn ? params_.evaluations : smooth;
     const SearchBudget budget{evaluations, [&](const SearchProgress& progress) {
                                 // Good enough, or hopeless.
                                 return progress.evaluations < smooth ||
@@ -303,11 +324,11 @@ class Planner {
       route.climb = climb_of(v, route.length_m);
       route.costs = route_costs(problem_, found_[i], *path);
       plan_.total_cost += route.costs.total;
+      const TimedRoute now{*path, v, problem_.rules, step_s(found_s_)};
       for (const TimedRoute& other : timed) {
-        plan_.spacing_cost +=
-            spacing_cost(other, TimedRoute{*path, v, problem_.rules}, problem_.rules);
+        plan_.spacing_cost += spacing_cost(other, now, problem_.rules);
       }
-      timed.emplace_back(*path, v, problem_.rules);
+      timed.push_back(now);
       plan_.routes.push_back(std::move(route));
     }
     plan_.total_cost += problem_.spacing_weight * plan_.spacing_cost;
@@ -322,6 +343,8 @@ class Planner {
   std::vector<double> bounds_;
   std::vector<double> shortest_;  ///< flyable, by vehicle
   double earliest_s_ = 0.0;
+  double latest_offset_s_ = -std::numeric_limits<double>::infinity();
+  std::vector<std::vector<Vec2>> kept_;  ///< by vehicle: the last one at the time that is tried
   std::vector<std::vector<Vec2>> found_;
   double found_s_ = 0.0;
   std::vector<std::size_t> order_;  ///< in which vehicles are planned

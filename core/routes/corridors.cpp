@@ -58,10 +58,11 @@ class Search {
       if (!holds_end) discs_.push_back(disc);
     }
     add_ends();
+    const double least_m = ends.turns_at_ends_only ? 0.0 : ends.turn_radius_m;
     for (std::size_t i = 0; i < discs_.size(); ++i) {
       for (const double sense : {1.0, -1.0}) {
-        circles_.push_back({discs_[i].centre, std::max(discs_[i].radius_m, ends.turn_radius_m),
-                            sense, i, Circle::Role::around, 0.0});
+        circles_.push_back({discs_[i].centre, std::max(discs_[i].radius_m, least_m), sense, i,
+                            Circle::Role::around, 0.0});
       }
     }
     lines_.resize(circles_.size() * circles_.size());

@@ -25,7 +25,6 @@ constexpr std::array kCorners_rad = {0.15, 0.3, 0.45, 0.6, 0.8, 1.05, 1.4};
 /// The most waypoints that two detours add.
 constexpr std::size_t kDetourWaypoints = 6;
 constexpr std::size_t kExposureSamples = 200;
-constexpr std::size_t kSpacingSamples = 64;
 
 std::vector<Disc> discs_of(const std::vector<Hazard>& circles) {
   std::vector<Disc> discs;
@@ -66,6 +65,36 @@ std::optional<BaseRoute> cornered(const RouteProblem& problem, const RouteVehicl
   return std::nullopt;
 }
 
+/// No way to the entry is shorter that turns onto the approach heading, and with `with_start` from
+/// its start heading's cone, no tighter than the vehicle does; 0 where that is not known.
+///
+/// What lies outside of both turning circles of a pose is reached from it soonest by an arc and a
+/// line (Dubins 1957; Bui, Boissonnat, Soueres, Laumond 1994). So of a way through any point two
+/// radii away from the pose, neither part is shorter than the parts of the taut way are: where
+/// there are no hazards within these two radii. Those that are there are left out, which makes the
+/// bound no larger.
+double turning_way_m(const RouteVehicle& vehicle, const Vec2& entry, std::vector<Hazard> circles,
+                     bool with_start) {
+  const double near_m = 2.0 * vehicle.turn_radius_m;
+  if (with_start && vehicle.start_cone_rad >= kPi) return 0.0;
+  if ((entry - vehicle.start).norm() <= (with_start ? 2.0 : 1.0) * near_m) return 0.0;
+  std::erase_if(circles, [&](const Hazard& circle) {
+    const double reach_m = circle.radius_m + near_m;
+    return (circle.centre - entry).norm() < reach_m ||
+           (with_start && (circle.centre - vehicle.start).norm() < reach_m);
+  });
+  const std::vector<Corridor> found =
+      shortest_corridors({.start = vehicle.start,
+                          .start_heading_rad = vehicle.start_heading_rad,
+                          .start_cone_rad = with_start ? vehicle.start_cone_rad : kPi,
+                          .goal = entry,
+                          .goal_heading_rad = vehicle.approach_heading_rad,
+                          .turn_radius_m = vehicle.turn_radius_m,
+                          .turns_at_ends_only = true},
+                         discs_of(circles), 1);
+  return found.empty() ? 0.0 : found.front().length_m;
+}
+
 }  // namespace
 
 std::vector<Hazard> closed_circles(const RouteProblem& problem) {
@@ -83,10 +112,14 @@ double length_bound_m(const RouteProblem& problem, const RouteVehicle& vehicle) 
   for (Hazard& circle : circles) circle.radius_m -= kRounding_m;
   const double last_m = problem.rules.last_leg_m;
   const Vec2 entry = problem.site - last_m * unit_vector(vehicle.approach_heading_rad);
-  const CorridorEnds ends{.start = vehicle.start, .goal = entry};
-  const std::vector<Corridor> found = shortest_corridors(ends, discs_of(circles), 1);
+  const std::vector<Corridor> found =
+      shortest_corridors({.start = vehicle.start, .goal = entry}, discs_of(circles), 1);
   if (found.empty()) return kInfinity;
-  return std::max(found.front().length_m + last_m, climb_length_m(problem, vehicle));
+  double way_m = found.front().length_m;
+  for (const bool with_start : {false, true}) {
+    way_m = std::max(way_m, turning_way_m(vehicle, entry, circles, with_start));
+  }
+  return std::max(way_m + last_m, climb_length_m(problem, vehicle));
 }
 
 double climb_length_m(const RouteProblem& problem, const RouteVehicle& vehicle) {
@@ -125,8 +158,10 @@ std::vector<BaseRoute> base_routes(const RouteProblem& problem, const RouteVehic
   return routes;
 }
 
-TimedRoute::TimedRoute(const Path& path, const RouteVehicle& vehicle, const RouteRules& rules)
-    : speed_mps_{vehicle.speed_mps},
+TimedRoute::TimedRoute(const Path& path, const RouteVehicle& vehicle, const RouteRules& rules,
+                       double step_s)
+    : step_s_{step_s},
+      speed_mps_{vehicle.speed_mps},
       start_height_m_{vehicle.start_height_m},
       arrival_height_m_{vehicle.arrival_height_m},
       level_s_{(path.length_m() - rules.last_leg_m) / vehicle.speed_mps},
@@ -135,69 +170,100 @@ TimedRoute::TimedRoute(const Path& path, const RouteVehicle& vehicle, const Rout
   double flown = 0.0;
   for (const Segment& segment : path.segments) {
     poses_.push_back(pose);
+    directions_.push_back(unit_vector(pose.heading_rad));
     curvatures_.push_back(segment.curvature_per_m);
     times_s_.push_back(flown / speed_mps_);
     pose = advance(pose, segment.curvature_per_m, segment.length_m);
     flown += segment.length_m;
   }
   times_s_.push_back(flown / speed_mps_);
+  const auto samples = static_cast<std::size_t>(std::ceil(end_s() / step_s));
+  track_.reserve(samples);
+  std::size_t piece = 0;
+  for (std::size_t k = 0; k < samples; ++k) {
+    track_.push_back(at(static_cast<double>(k) * step_s, piece));
+  }
 }
 
 Vec2 TimedRoute::at(double t, std::size_t& piece) const {
   while (piece + 1 < poses_.size() && times_s_[piece + 1] <= t) ++piece;
   const Pose2& pose = poses_[piece];
   const double distance = speed_mps_ * (std::min(t, end_s()) - times_s_[piece]);
-  if (curvatures_[piece] == 0.0) return pose.position() + distance * unit_vector(pose.heading_rad);
+  if (curvatures_[piece] == 0.0) return pose.position() + distance * directions_[piece];
   return advance(pose, curvatures_[piece], distance).position();
 }
 
-double separation_deficit_m(const TimedRoute& a, const TimedRoute& b, const RouteRules& rules) {
-  const double separation_m = rules.separation_m;
-  if (separation_m <= 0.0) return 0.0;
-  double until = std::min(a.end_s(), b.end_s());
-  const double faster = std::max(a.speed_mps(), b.speed_mps());
-  if (std::abs(a.end_s() - b.end_s()) * faster < separation_m) {
-    until = std::min(until, std::max(a.last_leg_s(), b.last_leg_s()));
-  }
+namespace {
+
+/// The least distance between two times, by conservative steps.
+double least_distance_m(const TimedRoute& a, const TimedRoute& b, const RouteRules& rules,
+                        double from_s, double until_s) {
   // No distance is lost faster than both speeds allow: nothing can happen before the next look.
+  const double separation_m = rules.separation_m;
   const double closing = a.speed_mps() + b.speed_mps();
   const double step_min = 1e-3 * separation_m / closing;
   const double rising = std::abs(a.climb_mps()) + std::abs(b.climb_mps());
   double least = kInfinity;
   std::size_t piece_a = 0;
   std::size_t piece_b = 0;
-  double t = 0.0;
+  double t = from_s;
   while (true) {
     const double distance = (a.at(t, piece_a) - b.at(t, piece_b)).norm();
     const double above = std::abs(a.height_m(t) - b.height_m(t)) - rules.separation_height_m;
     if (above < 0.0) least = std::min(least, distance);
-    if (t >= until) break;
+    if (t >= until_s) return least;
     const double spare = distance - separation_m;
     // Once too near, how much nearer they come need not be exact.
     double step = (spare > 0.0 ? spare : separation_m) / closing;
-    if (above > 0.0) step = rising > 0.0 ? std::max(step, above / rising) : until;
-    t = std::min(until, t + std::max(step, step_min));
+    if (above > 0.0) step = rising > 0.0 ? std::max(step, above / rising) : until_s - t;
+    t = std::min(until_s, t + std::max(step, step_min));
   }
-  // What a shortest step may have hidden.
-  return std::max(0.0, separation_m + 1e-3 * separation_m - least);
+}
+
+}  // namespace
+
+double separation_deficit_m(const TimedRoute& a, const TimedRoute& b, const RouteRules& rules) {
+  if (rules.separation_m <= 0.0) return 0.0;
+  double until = std::min(a.end_s(), b.end_s());
+  const double faster = std::max(a.speed_mps(), b.speed_mps());
+  if (std::abs(a.end_s() - b.end_s()) * faster < rules.separation_m) {
+    until = std::min(until, std::max(a.last_leg_s(), b.last_leg_s()));
+  }
+  // What a shortest step may hide is asked for beside the separation.
+  const double asked_m = rules.separation_m + 1e-3 * rules.separation_m;
+  const double lost_m = a.step_s() * (a.speed_mps() + b.speed_mps());
+  const std::size_t samples = std::min(a.track().size(), b.track().size());
+  double least = kInfinity;
+  double here = (a.track()[0] - b.track()[0]).norm();
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double from = static_cast<double>(k) * a.step_s();
+    if (from > until) break;
+    const bool last = k + 1 == samples;
+    const double next = last ? here - lost_m : (a.track()[k + 1] - b.track()[k + 1]).norm();
+    // Between two samples they cannot come nearer than this.
+    if (0.5 * (here + next - lost_m) < asked_m) {
+      const double to = last ? until : std::min(until, from + a.step_s());
+      least = std::min(least, least_distance_m(a, b, rules, from, to));
+    }
+    here = next;
+  }
+  return std::max(0.0, asked_m - least);
 }
 
 double spacing_cost(const TimedRoute& a, const TimedRoute& b, const RouteRules& rules) {
   const double separation_m = rules.separation_m;
   if (separation_m <= 0.0) return 0.0;
-  const double until = std::min(a.end_s(), b.end_s());
+  const std::size_t samples = std::min(a.track().size(), b.track().size());
   double sum = 0.0;
-  std::size_t piece_a = 0;
-  std::size_t piece_b = 0;
-  for (std::size_t k = 0; k < kSpacingSamples; ++k) {
-    const double t = until * static_cast<double>(k) / static_cast<double>(kSpacingSamples);
-    const double d = (a.at(t, piece_a) - b.at(t, piece_b)).norm();
-    sum += 0.5 * (1.0 - std::tanh((d - separation_m) / separation_m));
-    if (rules.contact_m < kInfinity) {
-      sum += 0.5 * (1.0 + std::tanh((d - rules.contact_m) / separation_m));
-    }
+  // (1 - tanh x) / 2, which is nothing from there on.
+  constexpr double kFar = 20.0;
+  const auto below = [](double x) { return x > kFar ? 0.0 : 1.0 / (1.0 + std::exp(2.0 * x)); };
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double d = (a.track()[k] - b.track()[k]).norm();
+    sum += below((d - separation_m) / separation_m);
+    if (rules.contact_m < kInfinity) sum += below((rules.contact_m - d) / separation_m);
   }
-  return sum / static_cast<double>(kSpacingSamples);
+  return sum / static_cast<double>(samples);
 }
 
 RouteCosts route_costs(const RouteProblem& problem, std::span<const Vec2> waypoints,
@@ -304,7 +370,7 @@ double RouteJudge::judge(std::span<const Vec2> waypoints, std::span<const char> 
   if (broken > 0.0) return kUnflyable * (1.0 + broken);
   const auto path = fly_by_path(waypoints, vehicle_.turn_radius_m);
   if (!path) return kUnflyable;
-  const TimedRoute timed{*path, vehicle_, problem_.rules};
+  const TimedRoute timed{*path, vehicle_, problem_.rules, step_s_};
   double deficit = 0.0;
   double spacing = 0.0;
   for (const TimedRoute& other : others_) {

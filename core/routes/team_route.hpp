@@ -57,10 +57,11 @@ class Extension {
   double target_m_;
 };
 
-/// A route in time, from 0 to its end.
+/// A route in time, from 0 to its end, and its positions at every `step_s`, which is the same for
+/// all routes that are compared.
 class TimedRoute {
  public:
-  TimedRoute(const Path& path, const RouteVehicle& vehicle, const RouteRules& rules);
+  TimedRoute(const Path& path, const RouteVehicle& vehicle, const RouteRules& rules, double step_s);
 
   [[nodiscard]] double end_s() const { return times_s_.back(); }
   /// When its last straight leg begins.
@@ -73,10 +74,16 @@ class TimedRoute {
   /// `piece`: where to look first; for times that only grow.
   [[nodiscard]] Vec2 at(double t, std::size_t& piece) const;
 
+  [[nodiscard]] double step_s() const { return step_s_; }
+  [[nodiscard]] const std::vector<Vec2>& track() const { return track_; }
+
  private:
   std::vector<Pose2> poses_;  ///< at the beginning of every piece
+  std::vector<Vec2> directions_;
   std::vector<double> curvatures_;
   std::vector<double> times_s_;  ///< of the beginnings, and the end
+  std::vector<Vec2> track_;      ///< at 0, step_s_, ..., before the end
+  double step_s_;
   double speed_mps_;
   double start_height_m_;
   double arrival_height_m_;
@@ -88,7 +95,7 @@ class TimedRoute {
 [[nodiscard]] double separation_deficit_m(const TimedRoute& a, const TimedRoute& b,
                                           const RouteRules& rules);
 
-/// Spacing cost of two routes (Wu 2022, eq. 35): mean over their common time of
+/// Spacing cost of two routes (Wu 2022, eq. 35): mean over their tracks' common time of
 /// (1 - tanh((d - d_s) / d_s)) / 2 + (1 + tanh((d - d_c) / d_s)) / 2.
 [[nodiscard]] double spacing_cost(const TimedRoute& a, const TimedRoute& b,
                                   const RouteRules& rules);
@@ -101,8 +108,8 @@ class TimedRoute {
 class RouteJudge {
  public:
   RouteJudge(const RouteProblem& problem, const RouteVehicle& vehicle,
-             std::span<const Hazard> circles, std::span<const TimedRoute> others)
-      : problem_{problem}, vehicle_{vehicle}, circles_{circles}, others_{others} {}
+             std::span<const Hazard> circles, std::span<const TimedRoute> others, double step_s)
+      : problem_{problem}, vehicle_{vehicle}, circles_{circles}, others_{others}, step_s_{step_s} {}
 
   /// Below kInfeasible: keeps to every rule, the value is its cost. Above: comes too near to
   /// others; from kUnflyable on: breaks other rules. The more, the more. Pieces between waypoints
@@ -121,6 +128,7 @@ class RouteJudge {
   const RouteVehicle& vehicle_;
   std::span<const Hazard> circles_;
   std::span<const TimedRoute> others_;
+  double step_s_;
 };
 
 }  // namespace skein::routes

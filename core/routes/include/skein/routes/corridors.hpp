@@ -26,6 +26,8 @@ struct CorridorEnds {
   Vec2 goal{0.0, 0.0};
   std::optional<double> goal_heading_rad{};  ///< none: arrives in any direction
   double turn_radius_m = 0.0;                ///< >= 0
+  /// Turns at the ends only: around a smaller disc it turns as tightly as that.
+  bool turns_at_ends_only = false;
 };
 
 /// An arc of a corridor.

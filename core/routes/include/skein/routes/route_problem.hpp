@@ -84,8 +84,9 @@ struct PlannedRoute {
   std::vector<Vec2> waypoints{};  ///< start and site included
   double length_m = 0.0;          ///< eq. 1
   double arrival_s = 0.0;         ///< length over speed
-  /// No route that keeps clear of the closed hazards, with the last leg, the approach heading and
-  /// the climb, is shorter, whatever its turn radius.
+  /// No route that keeps clear of the closed hazards, with the last leg, the approach heading, the
+  /// start cone and the climb, is shorter. Turns count at its ends, where no hazard is within two
+  /// turn radii; between, it may turn as tightly as the hazards allow.
   double bound_m = 0.0;
   double climb = 0.0;  ///< height over distance until the last leg; negative: descends
   RouteCosts costs{};  ///< exposure over equal distances flown
