@@ -155,7 +155,7 @@ Result<TaskPlan> plan_survey(const AllocationParams& params, const VehicleSpec& 
   // A survey is flown alone: in the sense that gets there sooner.
   const auto leg_in = [&](int turn) {
     return leg_to_arc(params.avoidance, departure, vehicle.sensor_radius_m,
-                      vehicle.cruise_speed_mps, site, site.survey, turn);
+                      vehicle.cruise_speed_mps, site, site.survey, turn, ArcStarts::some);
   };
   Result<Leg> leg = leg_in(kCounterClockwise);
   if (auto other = leg_in(kClockwise); other && (!leg || other->shortest_m < leg->shortest_m)) {

@@ -305,7 +305,8 @@ void AllocationTable::measure(std::size_t row, std::size_t column) {
   set_pair(row, column, leg->task, leg->shortest_m);
   add_slack(row, column, leg->slack_m);
   if (!leg->around) return;
-  pair.lengths.emplace(transit_of(vehicle, leg->task, problem_->hazards), std::move(*leg->around));
+  pair.lengths = std::make_unique<TransitLengths>(transit_of(vehicle, leg->task, problem_->hazards),
+                                                  std::move(*leg->around));
 }
 
 /// The least length >= `wanted_m` that can be flown; none within the range.
@@ -330,7 +331,7 @@ std::optional<double> AllocationTable::flyable_from(std::size_t row, std::size_t
     auto found = find_clear_path(params, transit.from, transit.to, transit.radius_m,
                                  transit.hazards, departure(column).ways);
     if (!found) return std::nullopt;
-    pair.lengths.emplace(transit, std::move(*found));
+    pair.lengths = std::make_unique<TransitLengths>(transit, std::move(*found));
   }
   const double least_m = pair.lengths->none_before_m(wanted_m, resumption == Resumption::exactly);
   return least_m < kInfinity ? std::optional{least_m} : std::nullopt;

@@ -151,7 +151,7 @@ class AllocationTable {
     double verified_s = -1.0;  ///< the moment last found possible
     double refused_from_s = std::numeric_limits<double>::infinity();  ///< no path has the length
     double resumes_s = -std::numeric_limits<double>::infinity();      ///< until here
-    std::optional<TransitLengths> lengths;  ///< where hazards are in reach, once it was needed
+    std::unique_ptr<TransitLengths> lengths;  ///< where hazards are in reach, once it was needed
   };
 
   AllocationTable(const AllocationParams& params, const AllocationProblem& problem);

@@ -61,7 +61,7 @@ Result<TaskPath> fixed_arc(const Site& site, double start_rad, Duration dwell, d
 
 Result<Leg> leg_to_arc(const AvoidanceParams& params, const Departure& departure,
                        double arc_radius_m, double speed_mps, const Site& site,
-                       const ArcRequirement& arc, int turn) {
+                       const ArcRequirement& arc, int turn, ArcStarts starts) {
   const auto task_from = [&](double start_rad) {
     return fixed_arc(site, start_rad, arc.dwell, arc_radius_m, departure.radius_m, speed_mps, turn);
   };
@@ -70,18 +70,23 @@ Result<Leg> leg_to_arc(const AvoidanceParams& params, const Departure& departure
     return task ? leg_to(params, departure, *task) : task.error();
   }
   if (auto task = task_from(0.0); !task) return task.error();
-  const FreeStart plain =
-      shortest_to_circle(departure.from, departure.radius_m, site.position, arc_radius_m, turn);
-  Result<Leg> best = leg_to(params, departure, *task_from(plain.start_rad));
+  std::optional<Result<Leg>> best;
+  double least_m = 0.0;
+  if (starts == ArcStarts::best) {
+    const FreeStart plain =
+        shortest_to_circle(departure.from, departure.radius_m, site.position, arc_radius_m, turn);
+    best = leg_to(params, departure, *task_from(plain.start_rad));
+    least_m = plain.least_m;
+  }
   for (int i = 0; i < kArcStarts; ++i) {
     const auto task = task_from(arc_start_rad(site, departure.from, i));
-    const double least_m = shortest_dubins_length(departure.from, task->entry, departure.radius_m);
-    if (best && least_m >= best->shortest_m) continue;
+    const double direct_m = shortest_dubins_length(departure.from, task->entry, departure.radius_m);
+    if (best && *best && direct_m >= (*best)->shortest_m) continue;
     auto leg = leg_to(params, departure, *task);
-    if (leg && (!best || leg->shortest_m < best->shortest_m)) best = std::move(leg);
+    if (!best || (leg && (!*best || leg->shortest_m < (*best)->shortest_m))) best = std::move(leg);
   }
-  if (best) best->slack_m = best->shortest_m - plain.least_m;
-  return best;
+  if (*best) (*best)->slack_m = (*best)->shortest_m - least_m;
+  return std::move(*best);
 }
 
 Result<Leg> leg_of(const AvoidanceParams& params, const Candidate& vehicle,
@@ -92,7 +97,7 @@ Result<Leg> leg_of(const AvoidanceParams& params, const Candidate& vehicle,
   }
   if (task.kind == TaskKind::assess && task.index < site.assessments.size()) {
     return leg_to_arc(params, departure, vehicle.assess_radius_m, vehicle.speed_mps, site,
-                      site.assessments[task.index], kAssessmentSense);
+                      site.assessments[task.index], kAssessmentSense, ArcStarts::best);
   }
   return Error{name(site) + " has no task '" + to_string(task) + "' to plan"};
 }

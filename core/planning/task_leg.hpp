@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -48,10 +49,14 @@ struct Leg {
   double slack_m = 0.0;             ///< what another start of an arc that is free may be nearer by
 };
 
-/// To the arc's start; the one that is reached soonest where the start angle is free.
+/// Which starts of an arc are tried where its angle is free: 24, or the best of all too. A survey
+/// is bound by no award, and keeps to the few: its way is turned about less at the edge of a fence.
+enum class ArcStarts : std::uint8_t { some, best };
+
+/// To the arc's start; of those tried the one that is reached soonest where the angle is free.
 [[nodiscard]] Result<Leg> leg_to_arc(const AvoidanceParams& params, const Departure& departure,
                                      double arc_radius_m, double speed_mps, const Site& site,
-                                     const ArcRequirement& arc, int turn);
+                                     const ArcRequirement& arc, int turn, ArcStarts starts);
 
 /// How the candidate flies the task, and the least that it takes, around every hazard. The
 /// departure is the candidate's.
