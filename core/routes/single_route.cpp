@@ -183,7 +183,7 @@ void rank(std::vector<Seed>& seeds) {
 /// flights, curves of even turning, and of turning that changes once. As many as may be evaluated.
 std::vector<Seed> seeds_of(const CurveProblem& problem, const SingleRouteParams& params,
                            CurveEvaluator& evaluator, Random& random) {
-  constexpr std::uint64_t kRandomShare = 15;  // one in so many evaluations
+  constexpr std::uint64_t kRandomShare = 8;  // one in so many evaluations
   const bool printed = problem.reading == CostReading::as_printed;
   std::vector<Seed> seeds;
   const auto add_point = [&](std::vector<double> point) {
@@ -222,7 +222,7 @@ std::vector<Seed> seeds_of(const CurveProblem& problem, const SingleRouteParams&
 /// The best seeds of different ways: a few on each way past the keep-outs, none near another.
 std::vector<const Seed*> different_ways(const CurveProblem& problem, const std::vector<Seed>& seeds,
                                         CurveEvaluator& evaluator) {
-  constexpr std::size_t kWays = 48;
+  constexpr std::size_t kWays = 64;
   constexpr std::size_t kOfAWay = 10;
   constexpr double kApart = 0.01;  ///< of the straight distance
   constexpr std::size_t kEvery = 8;
@@ -294,7 +294,7 @@ class FlightSearch {
 
  private:
   static constexpr std::uint64_t kScreen = 85;       ///< evaluations for one: seven gradients
-  static constexpr std::uint64_t kScreenShare = 60;  ///< of all, in per cent, until when
+  static constexpr std::uint64_t kScreenShare = 50;  ///< of all, in per cent, until when
   static constexpr std::ptrdiff_t kBest = 6;
   static constexpr std::uint64_t kPolish = 300;
   static constexpr double kAround = 0.03;  ///< of the box
