@@ -261,8 +261,8 @@ std::vector<const Seed*> different_ways(const CurveProblem& problem, const std::
 }
 
 /// Of flights: many different curves are taken some way towards their own least cost, so that they
-/// are compared as what they can become; the best of them further. Evolution goes on from these,
-/// and its best is polished.
+/// are compared as what they can become; the best of them further, and again from beside the best.
+/// Evolution goes on from these, and its best is polished.
 class FlightSearch {
  public:
   FlightSearch(const CurveProblem& problem, const SingleRouteParams& params,
@@ -285,6 +285,12 @@ class FlightSearch {
       if (left() < 3 * kPolish || !go_on()) break;
       polish(one.point, kPolish);
     }
+    const std::uint64_t evolved = params_.evaluations * kEvolveShare / 100;
+    while (left() > evolved && !polished_.empty() && go_on()) {
+      rank(polished_);
+      const std::size_t of_best = std::min<std::size_t>(kAgain, polished_.size());
+      polish(beside(polished_[random_.index(of_best)].point), std::min(kPolish, left() - evolved));
+    }
     rank(polished_);
     if (left() > 2 * kPolish && !found_.cancelled) evolve(left() - kPolish);
     if (left() > 0 && go_on()) polish(found_.best, left());
@@ -296,8 +302,10 @@ class FlightSearch {
   static constexpr std::uint64_t kScreen = 85;       ///< evaluations for one: seven gradients
   static constexpr std::uint64_t kScreenShare = 50;  ///< of all, in per cent, until when
   static constexpr std::ptrdiff_t kBest = 6;
-  static constexpr std::uint64_t kPolish = 300;
-  static constexpr double kAround = 0.03;  ///< of the box
+  static constexpr std::uint64_t kPolish = 200;
+  static constexpr std::size_t kAgain = 3;           ///< others beside that many of the best
+  static constexpr std::uint64_t kEvolveShare = 20;  ///< of all, in per cent: what is left for it
+  static constexpr double kBeside = 0.04;            ///< of the box
 
   [[nodiscard]] std::uint64_t left() const { return params_.evaluations - found_.evaluations; }
   bool go_on() {
@@ -317,7 +325,15 @@ class FlightSearch {
     take(polished.point, polished.value);
     polished_.push_back({polished.value, polished.value, std::move(polished.point)});
   }
-  /// The polished ones, and others around the best.
+  [[nodiscard]] std::vector<double> beside(std::vector<double> point) {
+    const Box& box = evaluator_.box();
+    for (std::size_t j = 0; j < point.size(); ++j) {
+      point[j] += random_.normal(0.0, kBeside * (box.high[j] - box.low[j]));
+    }
+    box.clamp(point);
+    return point;
+  }
+  /// The polished ones, and others beside the best.
   void evolve(std::uint64_t evaluations) {
     const std::size_t population = population_for(problem_, params_);
     SearchSpace space{evaluator_.box(), {}};
@@ -325,13 +341,7 @@ class FlightSearch {
       if (space.seeds.size() < population / 2) space.seeds.push_back(one.point);
     }
     if (space.seeds.empty()) space.seeds.push_back(found_.best);
-    while (space.seeds.size() < population) {
-      std::vector<double> point = found_.best;
-      for (std::size_t j = 0; j < point.size(); ++j) {
-        point[j] += random_.normal(0.0, kAround * (space.box.high[j] - space.box.low[j]));
-      }
-      space.seeds.push_back(std::move(point));
-    }
+    while (space.seeds.size() < population) space.seeds.push_back(beside(found_.best));
     const std::uint64_t before = found_.evaluations;
     const SearchBudget budget{evaluations, [&](const SearchProgress& progress) {
                                 return !params_.go_on ||
