@@ -156,6 +156,12 @@ TEST(Cooperative, TheBoundKnowsTheTurnsAtBothEnds) {
   EXPECT_NEAR(plan.routes[0].bound_m, 1200 + 2.0 * kPi * 50, 1e-6);
 }
 
+/// A vehicle that stands in the way goes first, and the others keep the routes that are clear of
+/// it: a world that would take 165,306 tries if all were planned anew each time.
+TEST(Cooperative, AnotherOrderKeepsTheRoutesThatAreInNobodysWay) {
+  EXPECT_LT(planned(random_team(20, 30, Random{50007}), 50007).evaluations, 110'000U);
+}
+
 TEST(Cooperative, TheSameSeedGivesTheSamePlan) {
   const RouteProblem problem = random_team(4, 15, Random{3});
   const CooperativePlan a = planned(problem, 5);

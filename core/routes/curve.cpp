@@ -38,12 +38,6 @@ std::vector<double> natural_spline(const std::vector<double>& knots, std::size_t
   return values;
 }
 
-/// What a difference of turns is beyond the step that counts as none, and back.
-double beyond_step(double rad) {
-  return rad > kTurnStep_rad ? rad - kTurnStep_rad : std::min(rad + kTurnStep_rad, 0.0);
-}
-double with_step(double rad) { return rad == 0.0 ? 0.0 : rad + std::copysign(kTurnStep_rad, rad); }
-
 /// Bounds of turns_and_legs.
 constexpr double kFirstTurnMax_rad = 1.2;
 constexpr double kTurnDifferenceMax_rad = 1.2;
@@ -62,6 +56,13 @@ int kind_number(HazardKind kind, CostReading reading) {
 }
 
 }  // namespace
+
+double beyond_turn_step(double number) {
+  return number > kTurnStep_rad ? number - kTurnStep_rad : std::min(number + kTurnStep_rad, 0.0);
+}
+double with_turn_step(double rad) {
+  return rad == 0.0 ? 0.0 : rad + std::copysign(kTurnStep_rad, rad);
+}
 
 struct CurveEvaluator::Tables {
   CurveForm form = CurveForm::free_points;
@@ -176,7 +177,7 @@ void CurveEvaluator::Tables::place_by_shape(std::span<const double> point) {
     at += point[waypoints + j] * unit_vector(heading);
     polygon[j + 1] = at;
     heading += turn;
-    if (j + 1 < waypoints) turn += beyond_step(point[j + 1]);
+    if (j + 1 < waypoints) turn += beyond_turn_step(point[j + 1]);
   }
   // A similarity takes (0, 0) and `at` to the ends: a product of complex numbers.
   const double reach_sq = std::max(at.squaredNorm(), 1e-12);
@@ -309,6 +310,31 @@ RouteCosts CurveEvaluator::costs(std::span<const double> point) {
   return costs;
 }
 
+void CurveEvaluator::keep_out_room(std::size_t parts, double far, std::vector<double>& room) const {
+  Tables& t = *tables_;
+  const CurveTable table = t.table();
+  const CurveHazards hazards = t.hazards();
+  const double far_m = far * t.straight_m;
+  const std::size_t legs = t.samples - 1;
+  room.clear();
+  for (std::size_t i = 0; i < hazards.count; ++i) {
+    if (hazards.kind[i] != 3) continue;
+    for (std::size_t part = 0; part < parts; ++part) {
+      const std::size_t end = legs * (part + 1) / parts;
+      double inside = -far_m;
+      for (std::size_t k = legs * part / parts; k < end; ++k) {
+        const Vec2 out{t.x[k] - hazards.x[i], t.y[k] - hazards.y[i]};
+        const Vec2 leg{t.x[k + 1] - t.x[k], t.y[k + 1] - t.y[k]};
+        const double reach = hazards.radius[i] + far_m;
+        // Twice the leg, for what it bulges.
+        if (out.squaredNorm() > 2.0 * (reach * reach + 4.0 * leg.squaredNorm())) continue;
+        inside = std::max(inside, CurveLanes<2>::inside(table, hazards, i, k));
+      }
+      room.push_back(-inside / t.straight_m);
+    }
+  }
+}
+
 std::vector<Vec2> CurveEvaluator::curve(std::span<const double> point) {
   Tables& t = *tables_;
   t.evaluate(point);
@@ -342,7 +368,7 @@ std::vector<double> CurveEvaluator::point_of(std::span<const Vec2> free_waypoint
       length += point[t.waypoints + j];
       if (j == t.waypoints) break;
       const double turn = turn_at(polygon[j], polygon[j + 1], polygon[j + 2]);
-      point[j] = j == 0 ? turn : with_step(turn - before);
+      point[j] = j == 0 ? turn : with_turn_step(turn - before);
       before = turn;
     }
     const double scale = static_cast<double>(t.waypoints + 1) / length;

@@ -138,6 +138,10 @@ struct CurveLanes {
   /// How deep the leg after a sample comes into the hazard, with twice what the curve may bulge
   /// beyond it: an eighth of its second difference.
   static double depth(const CurveTable& t, const CurveHazards& h, std::size_t i, std::size_t k) {
+    return most(inside(t, h, i, k), 0.0);
+  }
+  /// The same; less than 0 where it passes outside.
+  static double inside(const CurveTable& t, const CurveHazards& h, std::size_t i, std::size_t k) {
     const double dx = t.x[k + 1] - t.x[k];
     const double dy = t.y[k + 1] - t.y[k];
     const double cx = h.x[i] - t.x[k];
@@ -152,7 +156,7 @@ struct CurveLanes {
     const double bx = (last ? dx : t.x[k + 2] - t.x[k + 1]) - (first ? dx : t.x[k] - t.x[k - 1]);
     const double by = (last ? dy : t.y[k + 2] - t.y[k + 1]) - (first ? dy : t.y[k] - t.y[k - 1]);
     const double bulge = 0.125 * __builtin_sqrt(bx * bx + by * by);
-    return most(h.radius[i] + bulge - __builtin_sqrt(ox * ox + oy * oy), 0.0);
+    return h.radius[i] + bulge - __builtin_sqrt(ox * ox + oy * oy);
   }
 
   static double entered(const CurveTable& t, const CurveHazards& h, double longest) {

@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cstdint>
 #include <string>
+#include <utility>
 
 #include "skein/paper_routes/paper_world.hpp"
 
@@ -41,6 +43,49 @@ TEST(SingleRoute, TheSameSeedGivesTheSameRouteAndSmallBudgetsHold) {
     EXPECT_EQ(a->waypoints, b->waypoints);
     EXPECT_EQ(a->costs.total, b->costs.total);
   }
+}
+
+/// Worlds where the best way does not look it at first, or only with legs and turns of its own: by
+/// the costs of flights, best known of searches with forty times the evaluations.
+TEST(SingleRoute, FindsWaysThatDoNotLookBestAtFirst) {
+  constexpr std::array<std::pair<std::uint64_t, double>, 4> kWorlds = {
+      {{100008, 1.0722}, {100105, 1.1481}, {100226, 1.0701}, {100246, 1.0347}}};
+  for (const auto& [world, best_known] : kWorlds) {
+    CurveProblem problem = random_curve(Random{world});
+    problem.reading = CostReading::of_flights;
+    const auto route = plan_route(problem, {}, Random{1});
+    ASSERT_TRUE(route.ok());
+    EXPECT_LT(route->costs.total, 1.01 * best_known) << world;
+    EXPECT_LE(route->evaluations, 7'500U);
+    EXPECT_TRUE(route->clear);
+  }
+}
+
+TEST(SingleRoute, OfFlightsSmallBudgetsHoldAndItCanBeCancelled) {
+  CurveProblem problem = random_curve(Random{4});
+  problem.reading = CostReading::of_flights;
+  for (const std::uint64_t budget : {1u, 300u, 1'100u, 2'000u}) {
+    SingleRouteParams params;
+    params.evaluations = budget;
+    const auto a = plan_route(problem, params, Random{1});
+    const auto b = plan_route(problem, params, Random{1});
+    ASSERT_EQ(a.ok(), b.ok());
+    if (budget == 1 && !a) continue;  // the straight line enters a keep-out
+    ASSERT_TRUE(a.ok()) << budget;
+    EXPECT_LE(a->evaluations, budget);
+    EXPECT_EQ(a->waypoints, b->waypoints);
+  }
+  SingleRouteParams params;
+  std::uint64_t told = 0;
+  params.go_on = [&](const SearchProgress& progress) {
+    EXPECT_GE(progress.evaluations, told);
+    told = progress.evaluations;
+    return told < 3'000;
+  };
+  const auto route = plan_route(problem, params, Random{1});
+  ASSERT_TRUE(route.ok());
+  EXPECT_TRUE(route->cancelled);
+  EXPECT_LT(route->evaluations, 3'500U);
 }
 
 TEST(SingleRoute, GoesRoundAWallOfKeepOuts) {

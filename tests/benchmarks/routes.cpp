@@ -84,6 +84,16 @@ void plan_single(benchmark::State& state) {
   }
 }
 
+/// Of flights, in random worlds.
+void plan_flight(benchmark::State& state) {
+  std::uint64_t seed = 0;
+  for (auto _ : state) {
+    CurveProblem problem = skein::routes::random_curve(Random{seed});
+    problem.reading = skein::routes::CostReading::of_flights;
+    benchmark::DoNotOptimize(skein::routes::plan_route(problem, {}, Random{seed++}));
+  }
+}
+
 void corridors(benchmark::State& state) {
   const auto problem = skein::routes::random_team(1, 30, Random{1});
   std::vector<skein::routes::Disc> discs;
@@ -122,13 +132,15 @@ BENCHMARK_CAPTURE(evaluate, narrow, CurveForm::lateral_offsets, CurveEvaluator::
     ->Name("evaluate/narrow/lateral");
 BENCHMARK(plain)->Name("evaluate/plain/lateral");
 BENCHMARK(plan_single)->Name("plan_route/skein")->DenseRange(0, 2)->Unit(benchmark::kMillisecond);
+BENCHMARK(plan_flight)->Name("plan_route/skein/flights")->Unit(benchmark::kMillisecond);
 BENCHMARK(corridors)->Name("corridors/skein")->Arg(1)->Arg(12)->Unit(benchmark::kMicrosecond);
 BENCHMARK(plan_paper_team)->Name("plan_routes/skein/paper")->Unit(benchmark::kMillisecond);
 BENCHMARK(plan_random_team)
     ->Name("plan_routes/skein/random")
     ->Arg(5)
     ->Arg(10)
-    ->Iterations(5)
+    ->Arg(20)
+    ->Iterations(10)
     ->Unit(benchmark::kMillisecond);
 
 }  // namespace

@@ -61,6 +61,9 @@ struct CurveProblem {
 };
 
 inline constexpr double kTurnStep_rad = 0.02;
+/// What a number of turns_and_legs is beyond the step that counts as none, and back.
+[[nodiscard]] double beyond_turn_step(double number);
+[[nodiscard]] double with_turn_step(double rad);
 
 /// What the optimiser's numbers are.
 enum class CurveForm : std::uint8_t {
@@ -95,6 +98,10 @@ class CurveEvaluator {
   /// The weighted sum. Precondition: point.size() == box().dimension().
   [[nodiscard]] double operator()(std::span<const double> point) { return costs(point).total; }
   [[nodiscard]] RouteCosts costs(std::span<const double> point);
+  /// Of the curve that was asked about last: how far it passes outside of each keep-out (of
+  /// flights), with what it may bulge between samples, over the straight distance. By keep-out, and
+  /// by equal parts of its samples; `far` where it is that or more. Negative: inside.
+  void keep_out_room(std::size_t parts, double far, std::vector<double>& room) const;
   /// The sampled curve, mission frame.
   [[nodiscard]] std::vector<Vec2> curve(std::span<const double> point);
   /// The free waypoints, mission frame.

@@ -12,14 +12,17 @@
 
 namespace skein::routes {
 
-/// How one vehicle's curve is planned: every way round the hazards, and curves of even turning, are
-/// seeds, and differential evolution goes on from them over the shape of the polygon
-/// (CurveForm::turns_and_legs): with a history of its successes, or, for the costs as printed,
-/// where that was measured to be worse, without (docs/routes.md).
+/// How one vehicle's curve is planned, over the shape of its polygon (CurveForm::turns_and_legs).
+/// Of flights: seeds are every way round the hazards with several spreads of waypoints, curves of
+/// even turning, and curves whose turning changes once; the best of each way past the keep-outs are
+/// taken some way to their own least cost by sequential convex programming, and the best of those
+/// further; differential evolution with a history of its successes goes on from them. As printed:
+/// differential evolution from the ways round the hazards, as was measured for the paper's tables
+/// (docs/routes.md).
 struct SingleRouteParams {
   std::uint64_t evaluations = 7'500;  ///< in all, those of the seeds included
-  /// 0: by the evaluations, of which the first generation takes one in 80, but 16 to 120 (as
-  /// printed one in 115, but 16 to 300).
+  /// Of the evolution. 0: by the evaluations, one in 170, but 16 to 120 (as printed one in 115, but
+  /// 16 to 300).
   std::size_t population = 0;
   std::size_t corridors = 12;  ///< by each reading of the hazards: all closed, cores, keep-outs
   std::function<bool(const SearchProgress&)> go_on;  ///< as in SearchBudget
