@@ -313,11 +313,19 @@ void TaskFlyer::keep_time(Instant now) {
                  task_->assignment.task, now);
 }
 
+bool TaskFlyer::run_is_open() const {
+  if (!task_ || task_->in_run()) return true;
+  const TimedPath& timed = task_->plan.timed;
+  const auto run = timed.piece(task_->plan.gate_m, timed.path.length_m());
+  return run && planning::is_clear(*run, ownship_.hazards());
+}
+
 void TaskFlyer::commit_delivery(Instant now) {
   const Instant gate = task_->begin_time();
   const bool in_time = now >= gate - kCommitLead && now <= gate - kCommitLatest;
   if (!in_time || !task_->accepts(TaskFlight::Event::committed)) return;
   if (!participant_.holds(task_->assignment.task, now, task_->end_time())) return;
+  if (!run_is_open()) return;
   SKEIN_ASSERT(task_->authorised());
   Flight& flight = ownship_.flight();
   const auto& timed = task_->plan.timed;

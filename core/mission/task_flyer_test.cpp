@@ -305,6 +305,22 @@ TEST(TaskFlyer, AGrantIsOfItsVehicleTimeAndBearingUntilItsEnd) {
   EXPECT_FALSE(granted([](A& g) { g.until = Instant{} - std::chrono::seconds{1}; }));
 }
 
+TEST(TaskFlyer, HoldsAtTheGateWhereAHazardHasAppearedBeyondIt) {
+  for (const bool covered : {false, true}) {
+    Flying f;
+    f.call();
+    f.award(60.0, 120.0);
+    f.grant();
+    f.fly_until(50.0);
+    EXPECT_TRUE(f.flyer.run_is_open());
+    ASSERT_EQ(covered && f.ownship.on_hazard({{HazardId{7}, test_site(1).position, 20.0}}),
+              covered);
+    EXPECT_EQ(f.flyer.run_is_open(), !covered);
+    f.fly_until(65.0);
+    EXPECT_EQ(f.reported(EventKind::task_started), covered ? 0 : 1);
+  }
+}
+
 TEST(TaskFlyer, HoldsAtTheGateWithoutAGrantOrALease) {
   for (const bool granted : {false, true}) {
     Flying f;

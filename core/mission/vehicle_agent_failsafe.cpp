@@ -102,13 +102,15 @@ void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
   }
   failsafe_.look_again(now);
   outbox.report(event::HazardKnown{hazard.id, hazard.radius_m}, {}, {}, now);
-  if (!ownship_.flight().started() || ownship_.keeps_clear(now)) return;
+  if (!ownship_.flight().started()) return;
+  const bool keeps_clear = ownship_.keeps_clear(now);
+  if (keeps_clear && flyer_.run_is_open()) return;
   // Its way is barred. Another way to the same time disturbs nobody; without one the task goes back
   // to the leader, who times the coalition anew.
   if (flyer_.detour(hazard.id, now)) return;
   // A task, a survey or a route is flown on where the hazard is near but does not bar the way.
   const bool bound = flyer_.flying() || scout_.flying() || ownship_.flight().en_route(now);
-  if (bound && ownship_.way_is_open(now)) return;
+  if (bound && ownship_.way_is_open(now) && flyer_.run_is_open()) return;
   respond(*failsafe_.update(now, {.path_barred = true}), now);
 }
 

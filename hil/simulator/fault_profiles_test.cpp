@@ -225,8 +225,8 @@ class Series : public testing::TestWithParam<const char*> {};
 
 TEST_P(Series, HoldsAndIsFinished) { EXPECT_EQ(broken(GetParam(), 30), ""); }
 INSTANTIATE_TEST_SUITE_P(Faults, Series,
-                         testing::Values("clocks", "crash", "hazards", "joining", "lossy",
-                                         "operator", "partition", "sites"));
+                         testing::Values("clocks", "covered", "crash", "hazards", "joining",
+                                         "lossy", "operator", "partition", "sites", "stall"));
 
 TEST(Faults, WhoCannotMissAHazardLeavesItForGood) {
   auto mission = drawn("none", 1);
