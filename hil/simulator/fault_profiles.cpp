@@ -279,7 +279,7 @@ constexpr std::array<Profile, 24> kProfiles{{{"none", nullptr, no_fault},
                                              {"clock", wrong_clock},
                                              {"taken-back", grants_taken_back},
                                              {"stall", stalled},
-                                             {"covered", covered_sites, nullptr, true},
+                                             {"covered", covered_sites},
                                              {"battery", batteries, nullptr, true},
                                              {"wind", wind, nullptr, true},
                                              {"narrow", narrow, nullptr, true}}};
