@@ -2,6 +2,7 @@
 #include "paths.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 namespace skein::planning::coupled {
 
@@ -23,16 +24,16 @@ void Paths::find(const Timing& timing) {
     }
   }
   // Backwards: all tails that one needs are there.
-  for (auto done = timing.done().rbegin(); done != timing.done().rend(); ++done) {
-    const Index index = model_.task_of[at(done->visit)];
+  for (const auto& done : std::views::reverse(timing.done())) {
+    const Index index = model_.task_of[at(done.visit)];
     const Task& task = model_.tasks[at(index)];
     Site& site = sites_[at(task.site)];
     double after_s = site_tail_s(task);
-    if (done->next != kNone) {
-      after_s = std::max(after_s, model_.reach_from(done->vehicle, done->visit)[done->next] +
-                                      tail_s(model_.task_of[at(done->next)]));
+    if (done.next != kNone) {
+      after_s = std::max(after_s, model_.reach_from(done.vehicle, done.visit)[done.next] +
+                                      tail_s(model_.task_of[at(done.next)]));
     }
-    const double tail_s = model_.class_of(done->vehicle).after_s[at(done->visit)] + after_s;
+    const double tail_s = model_.class_of(done.vehicle).after_s[at(done.visit)] + after_s;
     tail_s_[at(index)] = tail_s;
     if (task.id.kind == TaskKind::deliver) {
       site.common_tail_s = std::max(site.common_tail_s, task.offset_s + tail_s);

@@ -152,7 +152,8 @@ TEST(PlanChange, MovesAsManyAsAChangeCanTellAndSaysWhereThereAreMore) {
   ChangeRequest request;
   request.limits = kLimits;
   for (std::uint16_t i = 0; i < kMoversMax; ++i) {
-    const Vec3 from{10.0 * (i % 32), 10.0 * (i / 32), 10.0};
+    const int row = i / 32;
+    const Vec3 from{10.0 * (i % 32), 10.0 * row, 10.0};
     request.transfers.push_back({{static_cast<std::uint16_t>(i + 1)}, from, from + Vec3{0, 50, 0}});
   }
   const auto planned = plan_change(request);

@@ -22,6 +22,8 @@ class TransitLengths {
  public:
   /// The hazards of the transit must outlive it; `shortest` is its find_clear_path.
   TransitLengths(const Transit& transit, ClearPath shortest);
+  TransitLengths(const TransitLengths&) = delete;
+  TransitLengths& operator=(const TransitLengths&) = delete;
   TransitLengths(TransitLengths&& other) noexcept;
   TransitLengths& operator=(TransitLengths&& other) noexcept;
   ~TransitLengths();

@@ -70,8 +70,9 @@ struct PlannedChange {
 
 /// A change after which fewer vehicles rest nearer to each other than plan_change() can begin from,
 /// as who waited for each other may, or in a keep-out: one of them is led out, straight, away from
-/// all, to where nobody is nearer than separation and reserve and no keep-out is; the others stay. The shortest such way of the
-/// least that `allowed` lets be flown. None where nobody rests so near, or no way out is free.
+/// all, to where nobody is nearer than separation and reserve and no keep-out is; the others stay.
+/// The shortest such way of the least that `allowed` lets be flown. None where nobody rests so
+/// near, or no way out is free.
 [[nodiscard]] std::optional<PlannedChange> make_room(
     const ChangeRequest& request, const std::function<bool(const Transfer&)>& allowed);
 

@@ -150,9 +150,9 @@ class FormationGround {
   bool withdrawn_ = false;   ///< nobody begins the newest change any more
   std::optional<Instant> stuck_since_;
   bool told_refused_ = false;          ///< that the order cannot be given again
+  bool told_off_ = false;              ///< who is off its place
   std::optional<Instant> near_since_;  ///< all within tolerance
   std::optional<Instant> off_since_;   ///< somebody is beside where it was led to its end
-  bool told_off_ = false;
   std::optional<Instant> held_since_;
   std::optional<Instant> rest_since_;
   Instant next_;
