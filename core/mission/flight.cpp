@@ -167,14 +167,11 @@ constexpr int kPacesTried = 8;
 void be_on_time(TimedPath& timed, double begin_m, Instant at, Instant on_time_at) {
   const double mean_mps = timed.speed_mps;
   const double wanted_s = to_seconds(on_time_at - at);
-  const auto begin_at = [&] { timed.start_time += at - timed.time_at(begin_m); };
   for (int i = 0; wanted_s > 0.0 && i < kPacesTried; ++i) {
-    begin_at();
-    const double takes_s = to_seconds(timed.time_at(timed.on_time_m) - at);
+    const double takes_s = to_seconds(timed.time_at(timed.on_time_m) - timed.time_at(begin_m));
     timed.speed_mps = std::clamp(timed.speed_mps * takes_s / wanted_s,
                                  (1.0 - kPaceShare) * mean_mps, (1.0 + kPaceShare) * mean_mps);
   }
-  begin_at();
   timed.start_time += on_time_at - timed.time_at(timed.on_time_m);
 }
 
@@ -196,8 +193,9 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
   if (timed.speed_mps != old.speed_mps || timed.has_wind() || old.has_wind()) {
     timed.start_time = at - (timed.time_at(before_m) - now);
   }
-  if (timed.has_wind() && pace && pace->on_time_at)
+  if (timed.has_wind() && pace && pace->on_time_at) {
     be_on_time(timed, before_m, at, *pace->on_time_at);
+  }
   take_up(timed, now);
   return true;
 }

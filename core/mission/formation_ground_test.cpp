@@ -81,6 +81,11 @@ class Team {
     order.kind = OrderKind::take_off;
     return command(order).ok();
   }
+  /// All are heard, take off, and hold their places.
+  bool goes_up() {
+    return until([this] { return ground_.members().size() == vehicles_.size(); }) && take_off() &&
+           until([this] { return ground_.in_place(); });
+  }
   [[nodiscard]] const FormationGround& ground() const { return ground_; }
   [[nodiscard]] const Vec3& position(std::size_t index) const {
     return vehicles_.at(index).position;
@@ -140,9 +145,7 @@ FormationOrder line_around(const Vec3& centre) {
 
 TEST(FormationGround, SendsNobodyAboveTheCeilingOrBelowTheGround) {
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   FormationOrder order;
   order.kind = OrderKind::form;
   order.shape.spacing_m = 6.0;
@@ -161,9 +164,7 @@ TEST(FormationGround, SendsNobodyAboveTheCeilingOrBelowTheGround) {
 TEST(FormationGround, LeadsNobodyOutOfTheFence) {
   const Fence fence{{{-40.0, -40.0}, {40.0, -40.0}, {40.0, 40.0}, {-40.0, 40.0}}, 50.0};
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}, fence};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   FormationOrder order;
   order.kind = OrderKind::form;
   order.shape.spacing_m = 6.0;
@@ -185,9 +186,7 @@ TEST(FormationGround, LeadsNobodyOutOfTheFence) {
 TEST(FormationGround, WhoIsOutsideOfTheFenceMayLandAndComeIn) {
   const Fence fence{{{10.0, -20.0}, {50.0, -20.0}, {50.0, 20.0}, {10.0, 20.0}}, 50.0};
   Team team{{{0.0, 0.0, 0.0}}, fence};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 1; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   FormationOrder order;
   order.kind = OrderKind::land;
   EXPECT_TRUE(team.ground().preview(order).ok());
@@ -228,9 +227,7 @@ TEST(FormationGround, FliesNobodyToTheSideFromTheGroundOrNearIt) {
 
 TEST(FormationGround, APlaceWhereASilentVehicleIsStaysEmpty) {
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 3; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   team.lose(1);
   ASSERT_TRUE(team.until([&] { return team.ground().members().at({2}).lost; }));
   // Two places would be 2 m beside it.
@@ -244,9 +241,7 @@ TEST(FormationGround, APlaceWhereASilentVehicleIsStaysEmpty) {
 
 TEST(FormationGround, NobodyIsLedUpThroughWhereASilentVehicleIs) {
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 3; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   team.lose(1);
   ASSERT_TRUE(team.until([&] { return team.ground().members().at({2}).lost; }));
   const Vec3 lost = team.position(1);
@@ -266,9 +261,7 @@ TEST(FormationGround, NobodyIsLedUpThroughWhereASilentVehicleIs) {
 
 TEST(FormationGround, WhoStandsBesideItsPlaceIsToldAndHasLanded) {
   Team team{{{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   FormationOrder land;
   land.kind = OrderKind::land;
   ASSERT_TRUE(team.command(land).ok());
@@ -284,9 +277,7 @@ TEST(FormationGround, WhoStandsBesideItsPlaceIsToldAndHasLanded) {
 
 TEST(FormationGround, CorrectsASteadyDriftOnceAndKeepsThePlaces) {
   Team team{{{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   EXPECT_EQ(team.warnings(), 0U);
   const Vec3 place = team.position(1);
   team.push_aside(1, {0.25, 0.0, 0.0});  // within the tolerance of 0.3 m
@@ -304,9 +295,7 @@ TEST(FormationGround, CorrectsASteadyDriftOnceAndKeepsThePlaces) {
 
 TEST(FormationGround, LeavesASmallDriftAlone) {
   Team team{{{-3.0, 0.0, 0.0}, {3.0, 0.0, 0.0}}};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   team.push_aside(1, {0.1, 0.0, 0.0});
   for (int i = 0; i < 1200; ++i) team.step();
   EXPECT_EQ(team.warnings(), 0U);
@@ -314,9 +303,7 @@ TEST(FormationGround, LeavesASmallDriftAlone) {
 
 TEST(FormationGround, WhoRestTooNearAreLedApartFirst) {
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 2; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   // One hovers elsewhere after a new start, 3.1 m beside the other, where 3.3 m are needed. The
   // order is given again, once there is room.
   team.start_anew(1, team.position(0) + Vec3{3.1, 0.0, 0.0});
@@ -339,9 +326,7 @@ TEST(FormationGround, WhoStandTooNearAreNotLedApart) {
 TEST(FormationGround, ANewProcessThatRecallsKnowsWhereASilentVehicleMayBe) {
   for (const bool recalls : {true, false}) {
     Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
-    ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 3; }));
-    ASSERT_TRUE(team.take_off());
-    ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+    ASSERT_TRUE(team.goes_up());
     team.lose(1);
     for (int i = 0; i < 100; ++i) team.step();
     team.start_ground_anew(recalls);
@@ -364,9 +349,7 @@ TEST(FormationGround, ANewProcessThatRecallsKnowsWhereASilentVehicleMayBe) {
 
 TEST(FormationGround, AChangeThatIsNotRecalledMayBeFlownByWhoIsSilent) {
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
-  ASSERT_TRUE(team.until([&] { return team.ground().members().size() == 3; }));
-  ASSERT_TRUE(team.take_off());
-  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  ASSERT_TRUE(team.goes_up());
   const auto recorded = team.said.size();
   FormationOrder order;
   order.kind = OrderKind::rally;

@@ -213,7 +213,7 @@ void SeparationWatch::go_on(const Self& self, Instant now) {
     const double ahead_m = side * (other.state.z_m - from_m);
     const double beyond_m = side * (other.state.z_m - base_m_);
     if (ahead_m < 0.0 || beyond_m >= apart_m) continue;
-    if (!passes_near(self, other, now) && !may_come(self, other, now)) continue;
+    if (!passes_near(approach(self, other, now)) && !may_come(self, other, now)) continue;
     const double waits_m = other.state.z_m - side * apart_m;
     const double stop_m = side * (waits_m - from_m) < 0.0 ? from_m : waits_m;
     if (side * (stop_m - way_m) < 0.0) way_m = stop_m;
@@ -261,8 +261,7 @@ bool SeparationWatch::still_breaks(const Approach& a, const Self& self, const Ot
   return other.state.z_m > low - within_m && other.state.z_m < high + within_m;
 }
 
-bool SeparationWatch::passes_near(const Self& self, const Other& other, Instant now) const {
-  const Approach a = approach(self, other, now);
+bool SeparationWatch::passes_near(const Approach& a) const {
   return a.horizontal_m < kClearFactor * params_.separation_horizontal_m + a.margin_m;
 }
 
@@ -364,7 +363,7 @@ std::optional<double> SeparationWatch::free_height(const Other& other, bool up, 
     for (const auto& [id, third] : known_) {
       const Approach its = approach(self, third, now);
       const double apart_m = params_.separation_vertical_m + its.around_m;
-      if (std::abs(its.height_m - height_m) >= apart_m || !passes_near(self, third, now)) continue;
+      if (std::abs(its.height_m - height_m) >= apart_m || !passes_near(its)) continue;
       height_m = its.height_m + side * (room_m + its.around_m);
       moved = true;
     }
@@ -380,7 +379,7 @@ void SeparationWatch::keep_free(const Self& self, Instant now) {
   const auto bars = [&](const Other& other) {
     const Approach a = approach(self, other, now);
     return std::abs(a.height_m - *target_) < params_.separation_vertical_m + a.around_m &&
-           passes_near(self, other, now);
+           passes_near(a);
   };
   if (std::ranges::none_of(known_, [&](const auto& entry) { return bars(entry.second); })) return;
   for (const auto& [id, other] : known_) {

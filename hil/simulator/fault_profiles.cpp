@@ -624,27 +624,24 @@ void draw_wrong_clock(Random& random, TeamMission& mission) {
   mission.faults.push_back({{}, {}, ClockOff{whose, random.chance(0.5) ? off : -off}});
 }
 
-/// Shorter than lease and silence allow for, about as long, and longer.
-void draw_stalls(Random& random, TeamMission& mission, const FaultParams& params) {
-  static constexpr std::array kRoles{Role::any, Role::leader, Role::member};
-  for (std::size_t n = count(random, params.stalls); n > 0; --n) {
-    Fault fault;
-    fault.when.not_before = Instant{} + between(random, seconds{1}, params.phase);
-    fault.when.not_after = Instant{} + params.phase;
-    fault.when.after = between(random, Duration{}, seconds{6});
-    ProgramsStall still{{}, random.next()};
-    if (random.chance(0.15)) {
-      still.who = {kGroundStation};
-    } else {
-      fault.when.role = kRoles.at(random.index(kRoles.size()));
-    }
-    fault.lasts = between(random, milliseconds{200}, seconds{random.chance(0.5) ? 4 : 20});
-    fault.what = std::move(still);
-    mission.faults.push_back(std::move(fault));
-  }
-}
-
 }  // namespace
+
+Fault draw_stall(Random& random, Duration phase) {
+  static constexpr std::array kRoles{Role::any, Role::leader, Role::member};
+  Fault fault;
+  fault.when.not_before = Instant{} + between(random, seconds{1}, phase);
+  fault.when.not_after = Instant{} + phase;
+  fault.when.after = between(random, Duration{}, seconds{6});
+  ProgramsStall still{{}, random.next()};
+  if (random.chance(0.15)) {
+    still.who = {kGroundStation};
+  } else {
+    fault.when.role = kRoles.at(random.index(kRoles.size()));
+  }
+  fault.what = std::move(still);
+  fault.lasts = between(random, milliseconds{200}, seconds{random.chance(0.5) ? 4 : 20});
+  return fault;
+}
 
 void add_faults(TeamMission& mission, const FaultParams& params) {
   if (params.phase == Duration{}) return;
@@ -710,7 +707,9 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }
   draw_surroundings(random, mission, params);
-  draw_stalls(random, mission, params);
+  for (std::size_t n = count(random, params.stalls); n > 0; --n) {
+    faults.push_back(draw_stall(random, params.phase));
+  }
   draw_covered(random, mission, params);
 }
 

@@ -82,7 +82,9 @@ class Draw {
 
   std::vector<Fault> faults() {
     for (std::size_t n = some(random_, params_.ground); n > 0; --n) restart_ground();
-    for (std::size_t n = some(random_, params_.stalls); n > 0; --n) stall();
+    for (std::size_t n = some(random_, params_.stalls); n > 0; --n) {
+      faults_.push_back(draw_stall(random_, kPhase));
+    }
     for (std::size_t n = some(random_, params_.slow); n > 0; --n) slow();
     for (std::size_t n = some(random_, params_.flapping); n > 0; --n) flap();
     for (std::size_t n = some(random_, params_.disks); n > 0; --n) fill_disk();
@@ -115,25 +117,6 @@ class Draw {
     }
     fault.what = ProgramsEnd{{kGroundStation}};
     fault.lasts = between(random_, milliseconds{200}, seconds{15});
-    faults_.push_back(std::move(fault));
-  }
-
-  void stall() {
-    static constexpr std::array kRoles{Role::any, Role::leader, Role::member};
-    Fault fault;
-    fault.when.not_before = moment();
-    fault.when.not_after = Instant{} + kPhase;
-    fault.when.after = between(random_, Duration{}, seconds{6});
-    ProgramsStall still;
-    still.pick = random_.next();
-    if (random_.chance(0.15)) {
-      still.who = {kGroundStation};
-    } else {
-      fault.when.role = kRoles.at(random_.index(kRoles.size()));
-    }
-    fault.what = still;
-    // Shorter than what lease and silence allow for, about as long, and longer.
-    fault.lasts = between(random_, milliseconds{200}, seconds{random_.chance(0.5) ? 4 : 20});
     faults_.push_back(std::move(fault));
   }
 

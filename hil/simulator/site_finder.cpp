@@ -23,6 +23,11 @@ std::vector<Site> sites(const TeamMission& mission, bool reported) {
   return some;
 }
 
+bool can_be_told(const Aircraft& vehicle) {
+  return vehicle.takes_part() && !vehicle.battery_fell() &&
+         vehicle.spec().capabilities.has(TaskKind::survey);
+}
+
 }  // namespace
 
 SiteFinder::SiteFinder(const TeamMission& mission)
@@ -64,12 +69,11 @@ std::vector<SiteFinder::Found> SiteFinder::report_due(const std::vector<Aircraft
       return (vehicles[i].state().position().horizontal() - site.position).squaredNorm();
     };
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
-      if (!vehicles[i].takes_part() || vehicles[i].battery_fell()) continue;
+      if (!can_be_told(vehicles[i]) || told.contains(i)) continue;
       const auto activity = vehicles[i].activity();
       const bool free =
           activity == mission::Activity::searching || activity == mission::Activity::standing_by;
-      const bool can = free && specs_[i].capabilities.has(TaskKind::survey) && !told.contains(i);
-      if (can && (!nearest || distance(i) < distance(*nearest))) nearest = i;
+      if (free && (!nearest || distance(i) < distance(*nearest))) nearest = i;
     }
     if (!nearest) return false;
     told.insert(*nearest);
@@ -106,9 +110,7 @@ std::vector<SiteFinder::Found> SiteFinder::report_all(const std::vector<Aircraft
     };
     const auto consider = [&](bool also_busy) {
       for (std::size_t i = 0; i < vehicles.size(); ++i) {
-        const bool can = vehicles[i].takes_part() && !vehicles[i].battery_fell() &&
-                         specs_[i].capabilities.has(TaskKind::survey) &&
-                         (also_busy || !busy.contains(i));
+        const bool can = can_be_told(vehicles[i]) && (also_busy || !busy.contains(i));
         if (can && (!nearest || distance(i) < distance(*nearest))) nearest = i;
       }
     };

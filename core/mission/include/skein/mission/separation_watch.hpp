@@ -127,7 +127,7 @@ class SeparationWatch {
   [[nodiscard]] Approach approach(const Self& self, const Other& other, Instant now) const;
   [[nodiscard]] bool breaks(const Approach& a) const;
   [[nodiscard]] bool still_breaks(const Approach& a, const Self& self, const Other& other) const;
-  [[nodiscard]] bool passes_near(const Self& self, const Other& other, Instant now) const;
+  [[nodiscard]] bool passes_near(const Approach& a) const;
   void look(VehicleId id, Other& other, const Self& self, Instant now);
   void begin(Other& other, const Approach& a, Instant now);
   void end_when_clear(VehicleId id, Other& other, bool breaks, Instant now);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "skein/base/ids.hpp"
+#include "skein/base/random.hpp"
 #include "skein/base/result.hpp"
 #include "skein/base/time.hpp"
 #include "skein/hil/fault.hpp"
@@ -73,6 +74,10 @@ struct FaultParams {
 /// "lossy", "lossy,crash", ...: the profiles together. `mixed` draws several with the seed. Fails
 /// with the names that there are, also for a profile of formations.
 [[nodiscard]] Result<FaultParams> fault_params(const std::string& profiles, std::uint64_t seed);
+
+/// A program that stands still in the phase, anybody's: for shorter than lease and silence allow
+/// for, about as long, or longer.
+[[nodiscard]] Fault draw_stall(Random& random, Duration phase);
 
 /// Draws faults from the mission's seed and puts them into the mission: its faults, later hazards,
 /// the operator's decisions and the duration.
