@@ -317,7 +317,7 @@ bool TaskFlyer::run_is_open() const {
   if (!task_ || task_->in_run()) return true;
   const TimedPath& timed = task_->plan.timed;
   const auto run = timed.piece(task_->plan.gate_m, timed.path.length_m());
-  return run && planning::is_clear(*run, ownship_.hazards());
+  return run && planning::is_clear(*run, ownship_.hazards()) && ownship_.config().fence.holds(*run);
 }
 
 void TaskFlyer::commit_delivery(Instant now) {

@@ -56,8 +56,8 @@ class TaskFlyer {
   [[nodiscard]] bool flying() const { return task_.has_value(); }
   /// It is within its task's own run: that is flown to its end.
   [[nodiscard]] bool in_run() const { return task_ && task_->in_run(); }
-  /// False where a hazard that has become known lies on what it is to fly from the gate on, which
-  /// its flight plan does not hold before it has committed to it.
+  /// False where a hazard that has become known lies on what it is to fly from the gate on, or that
+  /// leads out of a fence that was ordered: its flight plan holds it only once it has committed.
   [[nodiscard]] bool run_is_open() const;
   [[nodiscard]] std::optional<TaskId> task() const {
     return task_ ? std::optional{task_->assignment.task} : std::nullopt;

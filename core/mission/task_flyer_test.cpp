@@ -321,6 +321,31 @@ TEST(TaskFlyer, HoldsAtTheGateWhereAHazardHasAppearedBeyondIt) {
   }
 }
 
+TEST(TaskFlyer, HoldsAtTheGateWhereAFenceThatWasOrderedLeavesTheSiteOut) {
+  Flying f;
+  f.call();
+  f.award(60.0, 120.0);
+  f.grant();
+  f.fly_until(50.0);
+  const Vec2 site = test_site(1).position;
+  const Fence wide{{{-3e3, -3e3}, {3e3, -3e3}, {3e3, 3e3}, {-3e3, 3e3}}};
+  ASSERT_TRUE(f.ownship.keep_fence(wide));
+  EXPECT_TRUE(f.flyer.run_is_open());
+  // The same with a notch around the site.
+  const Fence without{{{-3e3, -3e3},
+                       {3e3, -3e3},
+                       {3e3, site.y() - 20.0},
+                       {site.x() - 20.0, site.y() - 20.0},
+                       {site.x() - 20.0, site.y() + 20.0},
+                       {3e3, site.y() + 20.0},
+                       {3e3, 3e3},
+                       {-3e3, 3e3}}};
+  ASSERT_TRUE(f.ownship.keep_fence(without));
+  EXPECT_FALSE(f.flyer.run_is_open());
+  f.fly_until(65.0);
+  EXPECT_EQ(f.reported(EventKind::task_started), 0);
+}
+
 TEST(TaskFlyer, HoldsAtTheGateWithoutAGrantOrALease) {
   for (const bool granted : {false, true}) {
     Flying f;

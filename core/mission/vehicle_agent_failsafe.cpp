@@ -133,7 +133,9 @@ void VehicleAgent::Impl::watch_range(Instant now) {
 std::string VehicleAgent::Impl::keep_fence(const Fence& fence, Instant now) {
   if (ownship_.spec().height_m >= fence.height_max_m) return "its layer of height is above it";
   if (!ownship_.keep_fence(fence)) return "its home is outside of it";
-  if (!ownship_.flight().started() || ownship_.landing() || ownship_.keeps_in(now)) return {};
+  if (!ownship_.flight().started() || ownship_.landing()) return {};
+  const bool keeps_in = ownship_.keeps_in(now);
+  if (keeps_in && flyer_.run_is_open()) return {};
   if (const auto* response = failsafe_.update(now, {.path_barred = true})) respond(*response, now);
   step(now);
   return {};
