@@ -60,6 +60,45 @@ TEST(LandingOrder, GoesWhereTheConfigurationHasIt) {
   EXPECT_EQ(vehicle.plan.landing.heading_rad, 1.0);
 }
 
+/// Flies on for so long, while another stays so far below it.
+void fly_above(Lander& vehicle, double seconds, double below_m) {
+  for (double s = 0.0; s < seconds; s += kFlownStep_s) {
+    Telemetry other;
+    other.vehicle = VehicleId{9};
+    other.state = vehicle.state;
+    other.state.z_m -= below_m;
+    vehicle.tell(other);
+    vehicle.fly(0.0);  // one step
+  }
+}
+
+TEST(LandingOrder, WaitsUntilTheAirBelowIsFreeThoughNotForEver) {
+  Lander vehicle;
+  vehicle.order(CommandKind::return_home);
+  fly_above(vehicle, 120.0, 12.0);
+  vehicle.order(CommandKind::land);
+  fly_above(vehicle, 30.0, 12.0);
+  EXPECT_FALSE(vehicle.plan.lands);
+  vehicle.fly(10.0);  // the other is not heard any more
+  EXPECT_TRUE(vehicle.plan.lands);
+
+  Lander patient;
+  patient.order(CommandKind::return_home);
+  patient.fly(120.0);
+  patient.order(CommandKind::land);
+  fly_above(patient, 50.0, 12.0);
+  EXPECT_FALSE(patient.plan.lands);
+  fly_above(patient, 20.0, 12.0);
+  EXPECT_TRUE(patient.plan.lands);
+
+  Lander high;
+  high.order(CommandKind::return_home);
+  high.fly(120.0);
+  high.order(CommandKind::land);
+  fly_above(high, 10.0, 60.0);
+  EXPECT_TRUE(high.plan.lands) << "the other sees it come, and gives way";
+}
+
 TEST(LandingOrder, AnyOtherOrderCallsItOff) {
   for (const auto kind : {CommandKind::hold, CommandKind::return_home, CommandKind::resume}) {
     Lander vehicle;

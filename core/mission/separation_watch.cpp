@@ -37,6 +37,14 @@ constexpr double kComes_mps = 0.7;
 constexpr double kLayerRoom_m = 3.0;
 /// To pass through another's layer takes so long.
 constexpr double kCross_s = 8.0;
+/// Who comes down sinks by as much (planes by some 5 m/s, copters by 1.5), and flies as tight a
+/// turn.
+constexpr double kSinksLeast_mps = 1.5;
+constexpr double kSinksMost_mps = 6.0;
+constexpr double kTurns_mps2 = 5.0;
+/// Whoever comes down looks at heights so far below.
+constexpr double kBelow_m = 50.0;
+constexpr double kBelowStep_s = 0.25;
 constexpr Duration kWayPeriod = std::chrono::seconds{1};
 /// So near to it, it is back in its layer.
 constexpr double kBack_m = 2.0;
@@ -63,6 +71,8 @@ bool SeparationWatch::has_taken_off(const VehicleState& own) const {
 
 /// Between where this one is and where it is to fly, or near to one of these.
 bool SeparationWatch::on_the_way(const VehicleState& own, const VehicleState& other) const {
+  const double below_m = own.z_m - other.z_m;
+  if (looks_below_ && below_m > 0.0 && below_m < kBelow_m) return true;
   if (!off_layer_) return false;
   const auto [low_m, high_m] = std::minmax({own.z_m, base_m_, layer_m_});
   const double within_m = params_.separation_vertical_m + kWaits_m + kRoom_m;
@@ -220,6 +230,26 @@ void SeparationWatch::go_on(const Self& self, Instant now) {
   }
   // What it flies is not changed by the tenths of metres that it is off.
   if (way_m == base_m_ || std::abs(way_m - way_m_) >= kClearHeight_m) way_m_ = way_m;
+}
+
+bool SeparationWatch::is_free_below(const VehicleState& own, Instant now) const {
+  return std::ranges::none_of(
+      known_, [&](const auto& entry) { return can_be_below(own, entry.second, now); });
+}
+
+bool SeparationWatch::can_be_below(const VehicleState& own, const Other& other, Instant now) const {
+  const double below_m = own.z_m - other.state.z_m;
+  if (below_m <= 0.0 || now - other.heard > kForgotten) return false;
+  const double age_s = to_seconds(now - other.heard + other.delay);
+  const double from_s = std::max(0.0, below_m - params_.separation_vertical_m) / kSinksMost_mps;
+  const double to_s = std::min(to_seconds(params_.separation_look_ahead),
+                               (below_m + params_.separation_vertical_m) / kSinksLeast_mps);
+  for (double s = from_s; s <= to_s; s += kBelowStep_s) {
+    const double turned_m = 0.5 * kTurns_mps2 * (s * s + (s + age_s) * (s + age_s));
+    const Vec2 apart = position_at(other.state, age_s + s) - position_at(own, s);
+    if (apart.norm() < params_.separation_horizontal_m + turned_m) return true;
+  }
+  return false;
 }
 
 SeparationWatch::Approach SeparationWatch::approach(const Self& self, const Other& other,

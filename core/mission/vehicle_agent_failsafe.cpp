@@ -6,6 +6,13 @@
 #include "vehicle_agent_impl.hpp"
 
 namespace skein::mission {
+namespace {
+
+/// Within that it has heard those below, and waits for them no longer than to that.
+constexpr Duration kHearsOthers = std::chrono::seconds{2};
+constexpr Duration kWaitsToLand = std::chrono::seconds{60};
+
+}  // namespace
 
 void VehicleAgent::Impl::on_command(const Command& message, Instant now) {
   if (!commands_.take(message, ownship_.spec().id)) return;
@@ -26,9 +33,18 @@ void VehicleAgent::Impl::obey(CommandKind order, Instant now) {
   if (response != nullptr) respond(*response, now);
 }
 
-/// By order, where it is at home: else it is on its way there.
+/// By order, where it is at home: else it is on its way there. It waits until the air below is
+/// free, though not for ever: who is below one that lands gives way.
 void VehicleAgent::Impl::come_down(Instant now) {
-  if (!lands_ || ownship_.landing() || !ownship_.at_home(now)) return;
+  const bool waits = lands_ && !ownship_.landing();
+  separation_.look_below(waits);
+  if (!waits || !ownship_.at_home(now)) {
+    may_land_at_.reset();
+    return;
+  }
+  if (!may_land_at_) may_land_at_ = now + kHearsOthers;
+  const bool is_free = separation_.is_free_below(ownship_.state(), now);
+  if (now < *may_land_at_ || (!is_free && now < *may_land_at_ + kWaitsToLand)) return;
   if (ownship_.land() || std::exchange(told_barred_, true)) return;
   outbox.report(event::VehicleTrouble{event::Trouble::landing_barred}, {}, {}, now);
 }

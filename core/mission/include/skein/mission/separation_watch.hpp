@@ -87,9 +87,15 @@ class SeparationWatch {
   void on_piloted(VehicleId who, bool piloted);
   void step(const Self& self, Instant now);
 
+  /// It is about to come down, and looks at who is below, until it is told that it is not.
+  void look_below(bool looks) { looks_below_ = looks; }
+  /// Came it down now, nobody through whose height it then passes within seconds can be near,
+  /// however both turn. Of those that it has heard of since it looks below.
+  [[nodiscard]] bool is_free_below(const VehicleState& own, Instant now) const;
+
   /// It knows of others: step() is to be called with every state.
   [[nodiscard]] bool watches() const {
-    return !known_.empty() || target_.has_value() || off_layer_;
+    return !known_.empty() || target_.has_value() || off_layer_ || looks_below_;
   }
   [[nodiscard]] bool off_layer() const { return off_layer_; }
   /// From its layer, to which the vehicle is to change its height; 0: it flies there.
@@ -146,6 +152,7 @@ class SeparationWatch {
   [[nodiscard]] bool has_taken_off(const VehicleState& own) const;
   [[nodiscard]] bool on_the_way(const VehicleState& own, const VehicleState& other) const;
   [[nodiscard]] bool any_conflict() const;
+  [[nodiscard]] bool can_be_below(const VehicleState& own, const Other& other, Instant now) const;
 
   coalition::ProtocolParams params_;
   VehicleId self_;
@@ -156,7 +163,8 @@ class SeparationWatch {
   double asked_m_;                ///< where it is to fly: its layer, or Self::height_m
   double base_m_;                 ///< the same, with room for those that follow
   double way_m_;                  ///< as far as nobody is in the way there
-  bool off_layer_ = false;        ///< by Self::height_m, or not back from there yet
+  bool looks_below_ = false;
+  bool off_layer_ = false;  ///< by Self::height_m, or not back from there yet
   HeightBand room_;
   Instant next_way_ = Instant::min();
   Instant chosen_at_ = Instant::min();
