@@ -158,8 +158,9 @@ void SetupBook::watch_clock(Node& node, const Setup& setup, Instant now) const {
   if (is_ahead || is_behind) {
     node.ahead_s = to_seconds(ahead);
     node.clean = 0;
-  } else if (node.ahead_s != 0.0 && ++node.clean >= kClean) {
-    node.ahead_s = 0.0;
+  } else if (node.ahead_s != 0.0 && (node.clean == 0 || now - node.clean_at >= kCleanApart)) {
+    node.clean_at = now;
+    if (++node.clean >= kClean) node.ahead_s = 0.0;
   }
 }
 

@@ -88,6 +88,18 @@ TEST(SetupBook, AClockIsTrustedAgainAfterSeveralSetupsWithinTheGuard) {
   EXPECT_EQ(book.difference(kSeven), nullptr);
 }
 
+TEST(SetupBook, SetupsThatWaitedWhileThisProgramStoodStillTellNothingOfTheClock) {
+  SetupBook book{params(), kSeven, {}, at(0)};
+  const auto ground = [](double sent) {
+    auto setup = *SetupBook{params(), kGroundStation, kFirst, at(sent)}.poll_setup({}, at(sent));
+    setup.time += from_seconds(3.9);  // ahead
+    return setup;
+  };
+  book.on_setup(ground(1), at(1));
+  for (const double sent : {5.0, 10.0, 15.0}) book.on_setup(ground(sent), at(20));
+  EXPECT_NE(book.difference(kGroundStation), nullptr);
+}
+
 TEST(SetupBook, WhoIsNewIsToldAtOnce) {
   SetupBook book{params(), kGroundStation, {}, at(0)};
   ASSERT_TRUE(book.poll_setup({}, at(0)));

@@ -90,13 +90,16 @@ class SetupBook {
   [[nodiscard]] const SetupDifference* difference(VehicleId node) const;
 
  private:
-  /// A clock counts as within the guard again after so many setups in which it was.
+  /// A clock counts as within the guard again after so many setups in which it was, so far apart:
+  /// those that waited for this program while it stood still are late, which looks like it.
   static constexpr int kClean = 3;
+  static constexpr Duration kCleanApart = kPeriodWhileNew / 2;
   struct Node {
     InstanceId instance = {};
     std::string keys = {};
     double ahead_s = 0;
     int clean = 0;
+    Instant clean_at = {};                 ///< the last of them came
     std::vector<InstanceId> earlier = {};  ///< that were heard before, the newest last
     std::optional<Instant> twin_at = {};   ///< an earlier one was heard again
     std::optional<SetupDifference> difference = {};
