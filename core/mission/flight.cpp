@@ -273,14 +273,17 @@ Flight::Orbit Flight::best_orbit(const Pose2& at, const std::vector<Hazard>& haz
   return best;
 }
 
+bool Flight::misses(const Pose2& from, const std::vector<Hazard>& hazards) const {
+  const double radius_m = vehicle_.planning_radius_m();
+  return is_free(from, radius_m, hazards) ||
+         least_inside(from, 1.0 / radius_m, hazards).inside_m == 0.0 ||
+         least_inside(from, -1.0 / radius_m, hazards).inside_m == 0.0;
+}
+
 Path Flight::forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const {
-  const double planning_radius = vehicle_.planning_radius_m();
   Path path{from, {}};
-  if (is_free(from, planning_radius, hazards)) return path;
   // What need not be entered is the planner's to find its way around.
-  for (const double side : {1.0, -1.0}) {
-    if (least_inside(from, side / planning_radius, hazards).inside_m == 0.0) return path;
-  }
+  if (misses(from, hazards)) return path;
   const double tightest = 1.0 / vehicle_.turn_radius_m;
   const WayOut left = least_inside(from, tightest, hazards);
   const WayOut right = least_inside(from, -tightest, hazards);
@@ -337,6 +340,7 @@ std::optional<double> Flight::orbit_after(Path& path, double arc_curvature_per_m
   if (stays_in && orbit_keeps_clear(path.end(), arc_curvature_per_m, hazards)) {
     return arc_curvature_per_m;
   }
+  if (!misses(path.end(), hazards)) return std::nullopt;
   const double curvature = append_hold(path, hazards);
   if (!orbit_keeps_clear(path.end(), curvature, hazards)) return std::nullopt;
   return curvature;
@@ -351,6 +355,16 @@ bool Flight::orbit_keeps_clear(const Pose2& from, double curvature_per_m,
     const double distance = (hazard.centre - centre).norm();
     return std::abs(distance - radius) >= avoidance_.safety_radius_m(hazard);
   });
+}
+
+bool Flight::keeps_off(const Path& way, const std::vector<Hazard>& hazards) const {
+  std::vector<Hazard> circles = hazards;
+  for (Hazard& circle : circles) {
+    const double begins_m = (circle.centre - way.start.position()).norm() - kRoundingM;
+    circle.radius_m =
+        std::max(circle.radius_m, std::min(begins_m, avoidance_.safety_radius_m(circle)));
+  }
+  return planning::is_clear(way, circles);
 }
 
 bool Flight::keeps_clear(const std::vector<Hazard>& hazards, Instant now) const {

@@ -119,6 +119,12 @@ class Flight {
   /// of the hazards?
   [[nodiscard]] bool keeps_clear(const std::vector<Hazard>& hazards, Instant now) const;
 
+  /// Does that way stay outside the safety circles of the hazards, or as far outside the hazards as
+  /// where it begins?
+  [[nodiscard]] bool keeps_off(const Path& way, const std::vector<Hazard>& hazards) const;
+  /// Need the vehicle enter no hazard from there, turning at the planning radius?
+  [[nodiscard]] bool misses(const Pose2& from, const std::vector<Hazard>& hazards) const;
+
   /// The newest plan, once.
   [[nodiscard]] std::optional<FlightPlan> poll_plan();
 
@@ -135,9 +141,9 @@ class Flight {
   [[nodiscard]] double append_hold(Path& path, const std::vector<Hazard>& hazards,
                                    std::size_t pieces_max = kPathSegmentsMax) const;
   [[nodiscard]] Orbit best_orbit(const Pose2& at, const std::vector<Hazard>& hazards) const;
-  /// Where the vehicle is inside a hazard that has just become known, or no turn at the planning
-  /// radius misses it: the tightest turn to either side, and straight on, that is inside for the
-  /// shortest. Empty elsewhere.
+  /// Where the vehicle is inside a hazard that has just become known, or no turn misses it: the
+  /// tightest turn to either side, and straight on, that is inside for the shortest. Empty
+  /// elsewhere.
   [[nodiscard]] Path forced_way(const Pose2& from, const std::vector<Hazard>& hazards) const;
   /// To that point, around corners of the fence where it must, passing on in the direction of
   /// `next`. None where hazards leave no way.

@@ -325,6 +325,10 @@ TEST_F(OnTheWay, WhatDoesNotFitIsNot) {
   way = good;
   hazards.push_back(Hazard{{1}, way.path.pose_at(300.0).position(), 50.0});
   EXPECT_FALSE(taken()) << "into a hazard";
+  hazards.front().centre += 52.0 * left_of(unit_vector(way.path.start.heading_rad));
+  EXPECT_FALSE(taken()) << "nearer to one than its own would lead";
+  hazards.front().centre += 10.0 * left_of(unit_vector(way.path.start.heading_rad));
+  EXPECT_TRUE(taken());
   hazards.clear();
   EXPECT_TRUE(taken());
   flight.search({}, 40'000.0, at_seconds(33.0));

@@ -181,7 +181,7 @@ bool Ownship::way_is_open(Instant now) const {
   const auto& timed = flight_.plan().timed;
   const double ahead = timed.distance_at(now);
   const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
-  return rest && planning::is_clear(*rest, hazards());
+  return rest && planning::is_clear(*rest, hazards()) && flight_.misses(rest->end(), hazards());
 }
 
 bool Ownship::stays_in_fence(const Path& way, double orbit_curvature_per_m) const {

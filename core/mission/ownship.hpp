@@ -83,7 +83,8 @@ class Ownship {
   /// Does the plan keep clear of the hazards, if need be after a search or a way home was planned
   /// anew?
   [[nodiscard]] bool keeps_clear(Instant now);
-  /// What is left of the plan, its orbit excepted, touches no hazard, though it may come near.
+  /// What is left of the plan, its orbit excepted, touches no hazard, though it may come near; nor
+  /// need what comes after it.
   [[nodiscard]] bool way_is_open(Instant now) const;
   /// Keeps that fence from now on. False, and nothing changed, where its home is outside.
   bool keep_fence(const Fence& fence);

@@ -45,5 +45,20 @@ TEST(Ownship, AnOrbitToEitherSideStaysInTheFence) {
   }
 }
 
+/// Who would fly on to its end would have to fly into the hazard behind it.
+TEST(Ownship, AWayThatEndsWhereNoTurnMissesAHazardIsNotOpen) {
+  for (const double beyond_m : {60.0, 300.0}) {
+    PartsBench bench;
+    const Instant at = bench.now + std::chrono::seconds{2};
+    Path way{bench.ownship.flight().pose_at(at), {}};
+    ASSERT_TRUE(way.append(Segment{0.0, 500.0}));
+    ASSERT_TRUE(bench.ownship.flight().continue_with(at, way, 0.01, bench.now));
+    const Pose2 end = way.end();
+    const Vec2 centre = end.position() + beyond_m * unit_vector(end.heading_rad);
+    ASSERT_TRUE(bench.ownship.on_hazard({{HazardId{1}, centre, 50.0}}));
+    EXPECT_EQ(bench.ownship.way_is_open(bench.now), beyond_m > 100.0);
+  }
+}
+
 }  // namespace
 }  // namespace skein::mission

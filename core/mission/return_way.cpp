@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "skein/base/angles.hpp"
-#include "skein/planning/avoidance.hpp"
 
 namespace skein::mission {
 namespace {
@@ -43,7 +42,7 @@ bool is_way_home(const TimedPath& way, const VehicleSpec& vehicle, const Flight&
   const double length_m = way.path.length_m();
   const auto all = way.piece(0.0, length_m + kTwoPi / std::abs(way.tail_curvature_per_m));
   const double until_then_m = to_seconds(way.start_time - now) * vehicle.cruise_speed_mps;
-  return all && planning::is_clear(*all, hazards) && until_then_m + length_m <= range_m &&
+  return all && flight.keeps_off(*all, hazards) && until_then_m + length_m <= range_m &&
          (way.path.end().position() - flight.home()).norm() <= kHomeWithin_m;
 }
 

@@ -12,7 +12,8 @@ namespace skein::mission {
 
 /// Does the vehicle leave its own way home for that one, that the ground station has planned? Only
 /// while it is on its way home: one that begins ahead of it on its plan, turns no tighter than its
-/// own, keeps clear of hazards that it knows, leads home, and takes no more than `range_m`.
+/// own, keeps its distance from hazards that it knows, leads home, and takes no more than
+/// `range_m`.
 [[nodiscard]] bool is_way_home(const TimedPath& way, const VehicleSpec& vehicle,
                                const Flight& flight, const std::vector<Hazard>& hazards,
                                double range_m, Instant now);
