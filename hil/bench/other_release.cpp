@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "other_release.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -88,17 +90,18 @@ Result<std::vector<std::string>> fit_configuration(const std::filesystem::path& 
   return Error{"the other release goes on to refuse " + file.string()};
 }
 
-Result<void> write_configuration(configuration::VehicleConfig config,
-                                 const std::filesystem::path& file, Duration clock_off,
-                                 const std::filesystem::path* other) {
+Result<std::string> write_configuration(configuration::VehicleConfig config,
+                                        const std::filesystem::path& file, Duration clock_off,
+                                        const std::filesystem::path* other) {
   config.time.epoch_unix_ns -= clock_off.count();
   if (other != nullptr) config.network.transport_plugin.clear();
   std::ofstream{file} << configuration::to_yaml(config);
-  if (other == nullptr) return {};
+  if (other == nullptr) return std::string{};
   std::filesystem::path log = file;
   log += ".fitted.log";
   const auto left_out = fit_configuration(file, *other / "skein-onboard", log);
-  return left_out ? Result<void>{} : left_out.error();
+  if (!left_out) return left_out.error();
+  return fmt::format("{}", fmt::join(*left_out, ", "));
 }
 
 }  // namespace skein::hil
