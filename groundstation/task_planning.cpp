@@ -95,9 +95,15 @@ Result<PlannedTasks> plan_tasks(const Scenario& scenario, const planning::Planni
   planned.problem = tasking_problem(scenario);
   planned.problem.share = planning::TaskShare::one;
   auto plan = planning::branch_and_bound(planned.problem, budget);
-  if (!plan) {
-    planned.problem.share = planning::TaskShare::one_a_site;
-    plan = planning::branch_and_bound(planned.problem, budget);
+  // Where there are too few vehicles for that, they have one task at each of several sites.
+  if (!plan || !plan->left_out.empty()) {
+    CoupledProblem wider = planned.problem;
+    wider.share = planning::TaskShare::one_a_site;
+    auto more = planning::branch_and_bound(wider, budget);
+    if (!plan || (more && more->reward > plan->reward)) {
+      planned.problem = std::move(wider);
+      plan = std::move(more);
+    }
   }
   if (!plan) {
     return Error{plan.error().message +

@@ -66,6 +66,23 @@ TEST(TaskPlanning, SaysWhyThereIsNoPlan) {
   EXPECT_THAT(plan_tasks(scenario).error().message, HasSubstr("within its range"));
 }
 
+TEST(TaskPlanning, LeavesNoSiteOutThatVehiclesCanDoAfterAnother) {
+  auto scenario = coalition_6();
+  Site second = scenario.sites.front();
+  second.id = SiteId{2};
+  second.position += Vec2{600.0, 0.0};
+  scenario.sites = {scenario.sites.front(), second};
+  scenario.tasking.known = scenario.tasking.optional = {SiteId{1}, SiteId{2}};
+  scenario.tasking.criterion = planning::Criterion::value;
+  for (auto& vehicle : scenario.vehicles) {
+    vehicle.spec.loads = 2;
+    vehicle.spec.range_m = 1e6;
+  }
+  const auto planned = plan_tasks(scenario);
+  ASSERT_TRUE(planned.ok()) << planned.error().message;
+  EXPECT_TRUE(planned->plan.left_out.empty());
+}
+
 TEST(TaskPlanning, APlanForOthersIsRefused) {
   auto scenario = coalition_6();
   auto plan = plan_tasks(scenario)->file;
