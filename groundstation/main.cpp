@@ -2,6 +2,7 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
@@ -11,8 +12,8 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -54,9 +55,9 @@ struct PlanArguments {
   std::string folder;
   std::optional<std::uint64_t> seed;
   // Of tasks.
-  double seconds = 0.0;                                 ///< 0: by steps, the same on every machine
-  bool all_known = false;                               ///< every site of the mission is
-  std::optional<skein::planning::Criterion> criterion;  ///< in place of the mission's
+  double seconds = 0.0;    ///< 0: by steps, the same on every machine
+  bool all_known = false;  ///< every site of the mission is
+  std::string criterion;   ///< of kCriteria, in place of the mission's; empty: that
 };
 
 struct Arguments {
@@ -241,7 +242,12 @@ int plan(const PlanArguments& arguments) {
     scenario->tasking.known.clear();
     for (const skein::Site& site : scenario->sites) scenario->tasking.known.push_back(site.id);
   }
-  if (arguments.criterion) scenario->tasking.criterion = *arguments.criterion;
+  const auto& criteria = skein::configuration::kCriteria;
+  if (const auto wanted = std::ranges::find(criteria, arguments.criterion);
+      wanted != criteria.end()) {
+    scenario->tasking.criterion =
+        static_cast<skein::planning::Criterion>(wanted - criteria.begin());
+  }
   if (auto good = skein::configuration::check(*scenario); !good) {
     return fail(good.error().message, skein::process::kExitBadInput);
   }
@@ -492,15 +498,9 @@ class CommandLine {
     command.add_option("--seed", planning_.seed, "Of routes, in place of the mission's")
         ->check(why_no_seed);
     command.add_flag("--all-known", planning_.all_known, "Every site of the mission is known");
-    std::map<std::string, skein::planning::Criterion> criteria;
-    for (std::size_t k = 0; k < skein::configuration::kCriteria.size(); ++k) {
-      criteria.emplace(skein::configuration::kCriteria.at(k),
-                       static_cast<skein::planning::Criterion>(k));
-    }
-    command
-        .add_option("--criterion", planning_.criterion,
-                    "Of tasks, in place of the mission's: reward, completion or makespan")
-        ->transform(CLI::CheckedTransformer(criteria));
+    const auto& criteria = skein::configuration::kCriteria;
+    command.add_option("--criterion", planning_.criterion, "Of tasks, in place of the mission's")
+        ->check(CLI::IsMember(std::set<std::string>(criteria.begin(), criteria.end())));
     command
         .add_option("--time", planning_.seconds,
                     "Of tasks: seconds to plan for (default: some seconds of work, with which the "

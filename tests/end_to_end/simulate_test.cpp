@@ -67,6 +67,20 @@ TEST_F(Simulate, ManySeedsAreFlownAndSummedUp) {
   EXPECT_EQ(text, output()) << "the number of threads changes nothing";
 }
 
+TEST_F(Simulate, APlanOfTasksIsFlown) {
+  auto plan = ChildProcess::start(
+      {SKEIN_PROGRAMS "/skein-ground", "plan", kSmall, "--all-known", "--out", folder_.string()},
+      log_, {});
+  ASSERT_TRUE(plan);
+  ASSERT_TRUE(plan->wait(240s) && plan->clean()) << output();
+  EXPECT_EQ(run({kSmall}), "exit status 0");
+  const auto searching = output();
+  EXPECT_EQ(run({kSmall, "--routes", (folder_ / "plan.yaml").string()}), "exit status 0");
+  EXPECT_NE(output().find("DONE: 1 of 1 sites done"), std::string::npos) << output();
+  EXPECT_NE(output(), searching) << "they begin elsewhere";
+  EXPECT_EQ(run({kSmall, "--routes", kSmall}), "exit status 2") << "no plan";
+}
+
 TEST_F(Simulate, AFailingSeedIsTracedByTheLineThatIsPrinted) {
   // No vehicle can pass over its site to the nanometre.
   const auto strict = scenario_with("miss_distance_m: 30", "miss_distance_m: 0.000000001");

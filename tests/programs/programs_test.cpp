@@ -485,6 +485,16 @@ INSTANTIATE_TEST_SUITE_P(
                  "no ground station has the control socket"}),
     [](const auto& param_info) { return param_info.param.name; });
 
+TEST_F(Programs, TheirHelpIsText) {
+  for (const char* program : {SKEIN_ONBOARD, SKEIN_GROUND}) {
+    auto helped = start({program, "--help-all"});
+    ASSERT_TRUE(helped.wait(kPatience) && helped.clean());
+    const std::string text = text_of("log");
+    EXPECT_GT(text.size(), 500U);
+    for (const char c : text) ASSERT_TRUE(c == '\n' || (c >= ' ' && c <= '~')) << int{c};
+  }
+}
+
 TEST_F(Programs, APortInUseIsNamed) {
   const HeldPort held{nodes_.vehicle_port()};
   ASSERT_TRUE(held.held());
