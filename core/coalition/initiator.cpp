@@ -410,15 +410,18 @@ LeaseRenewal Initiator::farewell() const {
   return last;
 }
 
+/// Within its lease, by an owner of whom nothing more is heard.
+bool Initiator::may_be_flown(const Entry& entry) const {
+  const bool due =
+      authorised_rounds_.contains(entry.round.number) && entry.assignment.time <= entry.lease_until;
+  return entry.task.kind == TaskKind::deliver && (due || entry.reported == TaskState::started);
+}
+
 void Initiator::expire(Instant now) {
   for (auto& entry : ledger_) {
     if (entry.ownership != Ownership::leased || now < entry.lease_until + params_.clock_guard)
       continue;
-    const bool due = authorised_rounds_.contains(entry.round.number) &&
-                     entry.assignment.time <= entry.lease_until;
-    const bool may_be_flown =
-        entry.task.kind == TaskKind::deliver && (due || entry.reported == TaskState::started);
-    if (may_be_flown) {
+    if (may_be_flown(entry)) {
       make_unknown(entry);
     } else {
       lose(entry, Reason::owner_silent);
@@ -581,6 +584,17 @@ std::optional<Instant> Initiator::last_delivery() const {
     last = last ? std::max(*last, t) : t;
   }
   return last;
+}
+
+std::vector<Initiator::Outstanding> Initiator::outstanding() const {
+  std::vector<Outstanding> all;
+  for (const auto& entry : ledger_) {
+    if (entry.ownership != Ownership::leased) continue;
+    all.push_back({entry.task, entry.assignment.vehicle, entry.round,
+                   entry.lease_until + params_.clock_guard,
+                   entry.maybe_flown || may_be_flown(entry)});
+  }
+  return all;
 }
 
 std::vector<TaskAssignment> Initiator::owned() const {

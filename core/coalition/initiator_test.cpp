@@ -110,6 +110,25 @@ TEST(Initiator, ATaskIsAnothersOnlyAGuardAfterItsLease) {
   EXPECT_TRUE(leader.newest<Initiator::TaskLost>());
 }
 
+TEST(Initiator, KnowsWhatMayBeHeldAfterItIsClosed) {
+  Leader leader{2};
+  leader.stands({kFirst, kSecond});
+  const Instant over = leader.newest_message<Award>()->lease_until + leader.params.clock_guard;
+  const Round round{kCoalition, 1};
+  leader.self.on_status({round, kSecond, {{Leader::task(1), TaskState::started, leader.now}}},
+                        leader.now);
+  auto held = leader.self.outstanding();
+  ASSERT_EQ(held.size(), 2U);
+  EXPECT_EQ(held[0].until, over);
+  EXPECT_FALSE(held[0].maybe_flown);
+  EXPECT_TRUE(held[1].maybe_flown);
+  EXPECT_EQ(held[1].owner, kSecond);
+  EXPECT_EQ(held[1].round, round);
+  leader.self.on_status({round, kSecond, {{Leader::task(1), TaskState::done, leader.now}}},
+                        leader.now);
+  EXPECT_EQ(leader.self.outstanding().size(), 1U);
+}
+
 /// A renewal reaches as far as half of the electors have promised, and no further.
 TEST(Initiator, LeasesNoFurtherThanItsElectorsPromise) {
   Leader leader{2};

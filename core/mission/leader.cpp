@@ -154,11 +154,11 @@ bool Leader::in_vain() const {
   return monitoring() && initiator_->owned().empty() && rounds_failed_ > kRoundsForAll;
 }
 
-std::optional<Site> Leader::put_off(Reason why, Instant now) {
+std::optional<Leader::PutOff> Leader::put_off(Reason why, Instant now) {
   if (!leading()) return std::nullopt;
-  Site site = initiator_->site();
+  PutOff what{initiator_->site(), initiator_->outstanding()};
   give_up({why}, now);
-  return site;
+  return what;
 }
 
 void Leader::hand_on(Reason why, Instant now) {

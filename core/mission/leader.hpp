@@ -71,7 +71,11 @@ class Leader {
   /// elsewhere meanwhile.
   [[nodiscard]] bool in_vain() const;
   /// Gives the site up for now: it is to be led later.
-  [[nodiscard]] std::optional<Site> put_off(coalition::Reason why, Instant now);
+  struct PutOff {
+    Site site;
+    std::vector<coalition::Initiator::Outstanding> outstanding;
+  };
+  [[nodiscard]] std::optional<PutOff> put_off(coalition::Reason why, Instant now);
   /// For one that cannot go on: gives the site up as soon as nobody flies what it awarded. Then its
   /// silence tells the others to take the site up.
   void hand_on(coalition::Reason why, Instant now);

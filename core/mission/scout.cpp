@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "skein/base/assert.hpp"
+#include "skein/base/contains.hpp"
 
 namespace skein::mission {
 namespace {
@@ -81,28 +82,58 @@ void Scout::on_message(const coalition::Message& message, Instant now) {
     is_led(renewal->site);
   } else if (const auto* status = std::get_if<coalition::MemberStatus>(&message)) {
     sites_.on_status(*status);
+    on_status(*status);
+  }
+}
+
+/// Whose task has ended, by its own word, holds it no more.
+void Scout::on_status(const coalition::MemberStatus& status) {
+  using coalition::TaskState;
+  for (Surveyed& surveyed : surveyed_) {
+    std::erase_if(surveyed.outstanding, [&status](const Outstanding& held) {
+      return held.owner == status.member && held.round == status.round &&
+             std::ranges::any_of(status.tasks, [&held](const coalition::TaskStatus& task) {
+               return task.task == held.task && task.state != TaskState::planned &&
+                      task.state != TaskState::started;
+             });
+    });
   }
 }
 
 std::optional<SurveyedSite> Scout::take_up(Instant now) {
   SKEIN_ASSERT(!flying());
-  if (!surveyed_.empty() && !surveyed_.front().in_vain) return lead_next();
+  const auto next = std::ranges::find_if(
+      surveyed_, [now](const Surveyed& s) { return now >= s.may_be_led_at(); });
+  const bool any = next != surveyed_.end();
+  if (any && !next->in_vain) return lead(next, now);
   take_up_survey(now);
   if (flying()) return std::nullopt;
-  if (!surveyed_.empty()) return lead_next();
+  if (any) return lead(next, now);
   take_up_relief(now);
   return std::nullopt;
 }
 
-/// Precondition: there is one.
-SurveyedSite Scout::lead_next() {
-  const Site site = surveyed_.front().site;
-  surveyed_.erase(surveyed_.begin());
-  return {site, sites_.over(site.id)};
+SurveyedSite Scout::lead(std::vector<Surveyed>::iterator next, Instant now) {
+  const Surveyed surveyed = std::move(*next);
+  surveyed_.erase(next);
+  SurveyedSite what{surveyed.site, sites_.over(surveyed.site.id)};
+  for (const Outstanding& held : surveyed.outstanding) {
+    if (!held.maybe_flown || contains(what.over, held.task)) continue;
+    outbox_.report(event::TaskUnknown{held.owner}, held.round, held.task, now);
+    what.over.push_back(held.task);
+  }
+  return what;
 }
 
-void Scout::put_off(const Site& site) {
-  surveyed_.insert(std::ranges::find_if(surveyed_, &Surveyed::in_vain), {site});
+Instant Scout::Surveyed::may_be_led_at() const {
+  Instant at = Instant::min();
+  for (const Outstanding& held : outstanding) at = std::max(at, held.until);
+  return at;
+}
+
+void Scout::put_off(const Site& site, const std::vector<Outstanding>& outstanding) {
+  surveyed_.insert(std::ranges::find_if(surveyed_, &Surveyed::in_vain),
+                   Surveyed{site, false, outstanding});
 }
 
 bool Scout::has_another_site() const {
@@ -111,8 +142,9 @@ bool Scout::has_another_site() const {
 }
 
 Instant Scout::takes_up_at() const {
-  if (!surveyed_.empty()) return Instant::min();
-  return found_.empty() ? relief_again_ : std::min(survey_again_, relief_again_);
+  Instant next = found_.empty() ? relief_again_ : std::min(survey_again_, relief_again_);
+  for (const Surveyed& surveyed : surveyed_) next = std::min(next, surveyed.may_be_led_at());
+  return next;
 }
 
 void Scout::take_up_survey(Instant now) {

@@ -13,6 +13,7 @@
 #include "ownship.hpp"
 #include "site_book.hpp"
 #include "skein/base/state_table.hpp"
+#include "skein/coalition/initiator.hpp"
 
 namespace skein::mission {
 
@@ -59,10 +60,12 @@ class Scout {
   void on_message(const coalition::Message& message, Instant now);
   /// Nobody shall lead it any more.
   void close(SiteId site) { sites_.close(site); }
-  /// A surveyed site that was led here shall be led later.
-  void put_off(const Site& site);
+  /// A surveyed site that was led here shall be led later, and not before what was awarded then is
+  /// over: who holds it may not have heard that it is led no more.
+  using Outstanding = coalition::Initiator::Outstanding;
+  void put_off(const Site& site, const std::vector<Outstanding>& outstanding);
   /// So shall one that was led in vain, after all else that waits here.
-  void put_last(const Site& site) { surveyed_.push_back({site, true}); }
+  void put_last(const Site& site) { surveyed_.push_back({site, true, {}}); }
   /// Does anything wait here that can be surveyed or led?
   [[nodiscard]] bool has_another_site() const;
 
@@ -95,9 +98,13 @@ class Scout {
   struct Surveyed {
     Site site;
     bool in_vain = false;  ///< it was led
+    std::vector<Outstanding> outstanding;
+
+    [[nodiscard]] Instant may_be_led_at() const;
   };
   void fire(Event event);
-  [[nodiscard]] SurveyedSite lead_next();
+  [[nodiscard]] SurveyedSite lead(std::vector<Surveyed>::iterator next, Instant now);
+  void on_status(const coalition::MemberStatus& status);
   void report_detected(const Site& site, Instant now);
   void take_up_survey(Instant now);
   void take_up_relief(Instant now);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scout.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "agent_parts_test.hpp"
@@ -197,7 +198,7 @@ TEST(Scout, WhatWasLedInVainComesAfterAllElse) {
   Scouting s;
   EXPECT_FALSE(s.scout.has_another_site());
   s.scout.put_last(test_site(1));
-  s.scout.put_off(test_site(2));
+  s.scout.put_off(test_site(2), {});
   s.find(test_site(3));
   EXPECT_TRUE(s.scout.has_another_site());
   const auto first = s.scout.take_up(s.now);
@@ -213,13 +214,42 @@ TEST(Scout, WhatWasLedInVainComesAfterAllElse) {
 
 TEST(Scout, ASiteThatWasPutOffIsLedLaterUnlessOthersDo) {
   Scouting s;
-  s.scout.put_off(test_site(1));
-  s.scout.put_off(test_site(2));
+  s.scout.put_off(test_site(1), {});
+  s.scout.put_off(test_site(2), {});
   s.is_announced(test_site(1));
   const auto site = s.scout.take_up(s.now);
   ASSERT_TRUE(site);
   EXPECT_EQ(site->site.id, SiteId{2});
   EXPECT_FALSE(s.scout.take_up(s.now));
+}
+
+/// Who was awarded a task then may not have heard that its leader was held: nobody else is to have
+/// it before its lease is over, nor ever what may have been flown by then.
+TEST(Scout, ASiteThatWasPutOffIsLedWhenNobodyHoldsItsTasksAnyMore) {
+  const coalition::Round round{{{4}, {1}, 1}, 1};
+  const TaskId first{SiteId{1}, TaskKind::deliver, 0};
+  const TaskId second{SiteId{1}, TaskKind::deliver, 1};
+  Scouting s;
+  const Instant until = s.now + std::chrono::seconds{14};
+  s.scout.put_off(test_site(1), {{first, VehicleId{7}, round, until, true},
+                                 {second, VehicleId{8}, round, until, true}});
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_LE(s.scout.takes_up_at(), until);
+  coalition::MemberStatus status;
+  status.member = VehicleId{8};
+  status.round = round;
+  status.tasks = {{second, coalition::TaskState::failed, s.now}};
+  s.scout.on_message(coalition::Message{status}, s.now);
+  EXPECT_FALSE(s.scout.take_up(until - std::chrono::milliseconds{1}));
+  const auto site = s.scout.take_up(until);
+  ASSERT_TRUE(site);
+  EXPECT_THAT(site->over, testing::ElementsAre(first)) << "the other has said that it has not";
+  EXPECT_EQ(s.reported(EventKind::task_unknown), 1);
+
+  s.scout.put_off(test_site(1),
+                  {{second, VehicleId{8}, round, until + std::chrono::seconds{1}, false}});
+  s.scout.on_message(coalition::Message{status}, s.now);
+  EXPECT_TRUE(s.scout.take_up(until)) << "nobody holds it, by its word";
 }
 
 }  // namespace

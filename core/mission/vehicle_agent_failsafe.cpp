@@ -168,8 +168,8 @@ void VehicleAgent::Impl::watch_fence(Instant now) {
 void VehicleAgent::Impl::respond(const Failsafe::Response& response, Instant now) {
   if (response.withdraws != coalition::Reason::none) flyer_.withdraw(response.withdraws, now);
   if (response.lead == Failsafe::Lead::put_off) {
-    if (const auto site = leader_.put_off(coalition::Reason::held_by_operator, now))
-      scout_.put_off(*site);
+    if (const auto what = leader_.put_off(coalition::Reason::held_by_operator, now))
+      scout_.put_off(what->site, what->outstanding);
   }
   if (response.ends_scouting) scout_.call_off();
   pump(now);

@@ -144,6 +144,16 @@ class Initiator {
   [[nodiscard]] std::optional<Instant> last_delivery() const;
   /// What is said last: the coalition is over, and what became of its tasks.
   [[nodiscard]] LeaseRenewal farewell() const;
+  /// What its owner may hold still, or have flown, after the coalition is closed: it may not have
+  /// heard of that.
+  struct Outstanding {
+    TaskId task;
+    VehicleId owner;
+    Round round;
+    Instant until{};           ///< nobody holds it any more
+    bool maybe_flown = false;  ///< by then
+  };
+  [[nodiscard]] std::vector<Outstanding> outstanding() const;
   /// The tasks that others still own in this round, with their times.
   [[nodiscard]] std::vector<TaskAssignment> owned() const;
   [[nodiscard]] Tally tally() const {
@@ -171,6 +181,7 @@ class Initiator {
     Instant awarded_at{Instant::min()};    ///< the newest award that it is part of
   };
   void make_ledger(const std::vector<TaskId>& done);
+  [[nodiscard]] bool may_be_flown(const Entry& entry) const;
   void start_round(Instant now);
   void send_award(std::vector<TaskAssignment> assignments, Instant now);
   void start_anew(Instant now);
