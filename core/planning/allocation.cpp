@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "allocation_table.hpp"
 #include "ant_colony.hpp"
@@ -21,6 +22,8 @@ namespace skein::planning {
 namespace {
 
 constexpr double kLeft = 1.0;
+/// An aircraft is flown off its path by so much in calm air.
+constexpr double kFlownOff_m = 1.0;
 constexpr std::array<std::string_view, static_cast<std::size_t>(AllocationMethod::count)>
     kMethodNames{"best", "exact", "earliest", "colony", "polynomial", "greedy"};
 
@@ -151,16 +154,23 @@ Result<TaskPlan> plan_survey(const AllocationParams& params, const VehicleSpec& 
                              const Pose2& from, Instant start, const Site& site,
                              std::span<const Hazard> hazards) {
   const double radius_m = vehicle.planning_radius_m();
-  const Departure departure{from, radius_m, hazards};
   // A survey is flown alone: in the sense that gets there sooner.
-  const auto leg_in = [&](int turn) {
-    return leg_to_arc(params.avoidance, departure, vehicle.sensor_radius_m,
-                      vehicle.cruise_speed_mps, site, site.survey, turn, ArcStarts::some);
+  const auto leg_among = [&](std::span<const Hazard> circles) {
+    const Departure departure{from, radius_m, circles};
+    const auto leg_in = [&](int turn) {
+      return leg_to_arc(params.avoidance, departure, vehicle.sensor_radius_m,
+                        vehicle.cruise_speed_mps, site, site.survey, turn, ArcStarts::some);
+    };
+    Result<Leg> leg = leg_in(kCounterClockwise);
+    auto other = leg_in(kClockwise);
+    if (other && (!leg || other->shortest_m < leg->shortest_m)) leg = std::move(other);
+    return leg;
   };
-  Result<Leg> leg = leg_in(kCounterClockwise);
-  if (auto other = leg_in(kClockwise); other && (!leg || other->shortest_m < leg->shortest_m)) {
-    leg = std::move(other);
-  }
+  // Around an arc that touches a hazard an aircraft is flown some centimetres into it.
+  std::vector<Hazard> wide{hazards.begin(), hazards.end()};
+  for (Hazard& circle : wide) circle.radius_m += kFlownOff_m;
+  Result<Leg> leg = leg_among(wide);
+  if (!leg) leg = leg_among(hazards);
   if (!leg) return leg.error();
   const auto path = shortest_clear_path(params.avoidance, from, leg->task.entry, radius_m, hazards);
   if (!path) return path.error();
