@@ -93,11 +93,14 @@ class PlaceSolver {
   };
   static void spread(std::span<const Vec3> points, const Vec3& origin, std::size_t stride,
                      Columns& to);
+  [[nodiscard]] std::span<const double> guess(PlaceMethod method, std::span<const Vec3> vehicles,
+                                              std::span<const Vec3> places);
 
   Width width_;
   planning::AssignmentSolver solver_;
   Columns vehicles_;
   Columns places_;
+  std::vector<double> guess_;
 };
 
 /// The paper gives none of these; they are tuned on random instances of 5 and 32 vehicles.
