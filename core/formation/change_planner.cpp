@@ -19,6 +19,12 @@ namespace {
 /// From its least disc on: a larger one may be shorter in time, since tight turns are slow.
 constexpr double kDiscGrowth = 1.03;
 constexpr int kDiscsMax = 60;
+/// Of a roundabout. Who comes down falls on nobody where there is one alone, so that each more is
+/// to spare such a share of the time.
+constexpr std::size_t kLevelsMax = 4;
+constexpr double kSpared = 0.05;
+/// Way of a climb by its height: it costs a hundredth of the speed.
+constexpr double kClimb = 12.0;
 /// Vehicles that waited for each other rest as near as they may, and start from there.
 constexpr double kRounding_m = 1e-3;
 /// With less reserve than the way of so long at full speed they would wait for each other for ever:
@@ -100,6 +106,14 @@ class Planner {
   [[nodiscard]] bool leads_clear(const Transfer& way, std::size_t vehicle) const;
   [[nodiscard]] Change straight() const;
   [[nodiscard]] Change layers(const std::vector<int>& layer) const;
+  struct Turning {
+    Vec2 centre;
+    std::vector<bool> who;
+  };
+  [[nodiscard]] std::optional<Turning> who_turns(const Nearness& straight) const;
+  bool give_levels(const Turning& turning, std::size_t levels, Change& change) const;
+  [[nodiscard]] std::optional<PlannedChange> around(Turning turning, std::size_t levels,
+                                                    Duration within) const;
   [[nodiscard]] std::optional<PlannedChange> around(const Nearness& straight) const;
   [[nodiscard]] std::vector<int> layers_for(const Nearness& straight) const;
   /// Of all pairs; where it need not be complete it ends with the first conflict.
@@ -133,7 +147,7 @@ Change Planner::straight() const {
   change.limits = request_.limits;
   change.separation = request_.separation;
   for (const Transfer& transfer : request_.transfers) {
-    change.movers.push_back({transfer.vehicle, {transfer.from, transfer.to}, false});
+    change.movers.push_back({transfer.vehicle, {transfer.from, transfer.to}, 0});
   }
   return change;
 }
@@ -178,12 +192,12 @@ Nearness Planner::nearness(const Change& change, bool complete) const {
   return result;
 }
 
-/// Everybody who is in a conflict goes around one disc in the middle of the conflicts.
-std::optional<PlannedChange> Planner::around(const Nearness& straight_lines) const {
-  Vec2 sum{0.0, 0.0};
-  std::vector<bool> around(count_, false);
+/// Who is in a conflict, in the middle of all conflicts. Nothing where one is with a keep-out:
+/// nobody can make that turn with the others.
+std::optional<Planner::Turning> Planner::who_turns(const Nearness& straight_lines) const {
+  Turning turning{{0.0, 0.0}, std::vector<bool>(count_, false)};
   for (const auto& [a, b] : straight_lines.conflicts) {
-    if (b >= count_) return std::nullopt;  // nobody can make a keep-out turn with the others
+    if (b >= count_) return std::nullopt;
     // Where the two are nearest, both are the same share of their ways on.
     const Transfer& first = request_.transfers[a];
     const Transfer& second = request_.transfers[b];
@@ -193,18 +207,54 @@ std::optional<PlannedChange> Planner::around(const Nearness& straight_lines) con
     const double share = squared > 0.0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
     const Vec3 middle = 0.5 * (first.from + share * (first.to - first.from) + second.from +
                                share * (second.to - second.from));
-    sum += Vec2{middle.x(), middle.y()};
-    around[a] = around[b] = true;
+    turning.centre += Vec2{middle.x(), middle.y()};
+    turning.who[a] = turning.who[b] = true;
   }
-  const auto turning = static_cast<double>(std::count(around.begin(), around.end(), true));
+  turning.centre /= static_cast<double>(straight_lines.conflicts.size());
+  return turning;
+}
+
+/// Neighbours, as seen from the centre, on one level after the other. False above the ceiling.
+bool Planner::give_levels(const Turning& turning, std::size_t levels, Change& change) const {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i < count_; ++i) {
+    if (!turning.who[i]) continue;
+    const Vec2 from = request_.transfers[i].from.head<2>() - turning.centre;
+    order.emplace_back(std::atan2(from.y(), from.x()), i);
+  }
+  std::sort(order.begin(), order.end());
+  for (std::size_t rank = 0; rank < order.size(); ++rank) {
+    const std::size_t i = order[rank].second;
+    const std::size_t level = rank % levels;
+    const Transfer& transfer = request_.transfers[i];
+    const double line_m = std::max(transfer.from.z(), transfer.to.z());
+    const double over_m = static_cast<double>(level) * change.roundabout->level_m;
+    if (level > 0 && line_m + over_m > request_.ceiling_m) return false;
+    change.movers[i].level = static_cast<std::uint8_t>(1 + level);
+  }
+  return true;
+}
+
+/// Everybody who turns goes around one disc, on so many levels: the shortest of the discs that keep
+/// all apart, if it takes no longer.
+std::optional<PlannedChange> Planner::around(Turning turning, std::size_t levels,
+                                             Duration within) const {
+  const auto on_level = [&] {
+    const auto all = std::count(turning.who.begin(), turning.who.end(), true);
+    return std::ceil(static_cast<double>(all) / static_cast<double>(levels));
+  };
+  const double level_m = apart_m_ / height_factor_;
   Change change = straight();
-  for (std::size_t i = 0; i < count_; ++i) change.movers[i].around = around[i];
-  change.roundabout = Roundabout{sum / static_cast<double>(straight_lines.conflicts.size()),
-                                 apart_m_ / (2.0 * std::sin(kPi / std::max(2.0, turning)))};
+  change.roundabout =
+      Roundabout{turning.centre, apart_m_ / (2.0 * std::sin(kPi / std::max(2.0, on_level()))),
+                 level_m, kClimb * static_cast<double>(levels - 1) * level_m};
   std::optional<PlannedChange> best;
   for (int disc = 0; disc < kDiscsMax; ++disc, change.roundabout->radius_m *= kDiscGrowth) {
-    if (!valid(change)) break;  // a start or a place lies inside the rim
-    if (best && ChangeMotion{change}.duration() >= best->duration) break;
+    if (!give_levels(turning, levels, change)) break;
+    if (!valid(change)) break;  // a start or a place lies inside the rim, or too near to it
+    const Duration duration = ChangeMotion{change}.duration();
+    if (best && duration >= best->duration) break;
+    if (duration > within) continue;
     const Nearness found = nearness(change, false);
     if (found.conflicts.empty()) {
       best = planned(change, Way::roundabout, found.least_m);
@@ -212,8 +262,22 @@ std::optional<PlannedChange> Planner::around(const Nearness& straight_lines) con
     }
     // Who was out of their way may be in it now.
     for (const std::size_t i : {found.conflicts[0].first, found.conflicts[0].second}) {
-      if (i < count_) change.movers[i].around = true;
+      if (i < count_) turning.who[i] = true;
     }
+  }
+  return best;
+}
+
+std::optional<PlannedChange> Planner::around(const Nearness& straight_lines) const {
+  const auto turning = who_turns(straight_lines);
+  if (!turning) return std::nullopt;
+  std::optional<PlannedChange> best;
+  Duration within = Duration::max();
+  for (std::size_t levels = 1; levels <= kLevelsMax; ++levels) {
+    auto found = around(*turning, levels, within);
+    if (!found) continue;
+    within = from_seconds((1.0 - kSpared) * to_seconds(found->duration));
+    best = std::move(found);
   }
   return best;
 }

@@ -94,34 +94,104 @@ TEST(PlanChange, WhatItSaysOfSeparationIsTrue) {
   for (const int count : ways) EXPECT_GT(count, 0);
 }
 
-TEST(PlanChange, PointsAreDerivativesOfEachOther) {
+/// All to the opposite side of a circle.
+ChangeRequest swap(std::size_t n, double radius_m, double height_m) {
   Random random{3};
   ChangeRequest request;
   request.limits = kLimits;
-  for (int i = 0; i < 6; ++i) {
-    const Vec2 at = 20.0 * unit_vector(i * kPi / 3.0 + random.uniform(-0.1, 0.1));
-    request.transfers.push_back(
-        {{static_cast<std::uint16_t>(i + 1)}, {at.x(), at.y(), 20.0}, {-at.x(), -at.y(), 25.0}});
+  for (std::size_t i = 0; i < n; ++i) {
+    const double turn = 2.0 * kPi * static_cast<double>(i) / static_cast<double>(n);
+    const double aside_m = random.uniform(-0.1, 0.1);
+    const Vec2 at = radius_m * unit_vector(turn + aside_m / radius_m);
+    request.transfers.push_back({{static_cast<std::uint16_t>(i + 1)},
+                                 {at.x(), at.y(), 20.0},
+                                 {-at.x(), -at.y(), height_m}});
   }
+  return request;
+}
+
+int levels_of(const Change& change) {
+  int levels = 0;
+  for (const Mover& mover : change.movers) levels = std::max<int>(levels, mover.level);
+  return levels;
+}
+
+TEST(PlanChange, PointsAreDerivativesOfEachOther) {
+  for (const std::size_t n : {6U, 32U}) {
+    const ChangeRequest request = swap(n, n == 6 ? 20.0 : 40.0, 25.0);
+    const auto planned = plan_change(request);
+    ASSERT_TRUE(planned.ok());
+    ASSERT_EQ(planned->way, Way::roundabout);
+    EXPECT_EQ(levels_of(planned->change), n == 6 ? 1 : 2);
+    const ChangeMotion motion{planned->change};
+    constexpr double kH = 1e-4;
+    constexpr double kStep_s = 0.0503;
+    for (int step = 1; step * kStep_s < to_seconds(motion.duration()); ++step) {
+      const double t = step * kStep_s;
+      for (std::size_t i = 0; i < 6; ++i) {
+        const auto before = motion.at(i, from_seconds(t - kH));
+        const auto now = motion.at(i, from_seconds(t));
+        const auto after = motion.at(i, from_seconds(t + kH));
+        EXPECT_LT(((after.position_m - before.position_m) / (2 * kH) - now.velocity_mps).norm(),
+                  1e-3);
+        EXPECT_LT(((after.velocity_mps - before.velocity_mps) / (2 * kH)).norm(),
+                  2.0 * std::sqrt(2.0));
+        EXPECT_LT(now.velocity_mps.norm(), 3.0 * 1.001);
+        EXPECT_LT(now.acceleration_mps2.norm(), 2.0 * std::sqrt(2.0));
+        EXPECT_LT(now.velocity_mps.norm(), motion.speed_max_mps(i) + 1e-9);
+        EXPECT_NEAR(now.acceleration_mps2.z(),
+                    (after.velocity_mps.z() - before.velocity_mps.z()) / (2 * kH), 0.05);
+      }
+    }
+  }
+}
+
+TEST(PlanChange, ManyTurnOnTwoLevelsWhereThatSparesMuch) {
+  ChangeRequest request = swap(32, 40.0, 20.0);
+  const double ideal_s = MotionProfile{80.0, kLimits}.duration_s();
   const auto planned = plan_change(request);
   ASSERT_TRUE(planned.ok());
   ASSERT_EQ(planned->way, Way::roundabout);
-  const ChangeMotion motion{planned->change};
-  constexpr double kH = 1e-4;
-  constexpr double kStep_s = 0.0503;
-  for (int step = 1; step * kStep_s < to_seconds(motion.duration()); ++step) {
-    const double t = step * kStep_s;
-    for (std::size_t i = 0; i < 6; ++i) {
-      const auto before = motion.at(i, from_seconds(t - kH));
-      const auto now = motion.at(i, from_seconds(t));
-      const auto after = motion.at(i, from_seconds(t + kH));
-      EXPECT_LT(((after.position_m - before.position_m) / (2 * kH) - now.velocity_mps).norm(),
-                1e-3);
-      EXPECT_LT(now.velocity_mps.norm(), 3.0 * 1.001);
-      EXPECT_LT(now.acceleration_mps2.norm(), 2.0 * std::sqrt(2.0));
-      EXPECT_LT(now.velocity_mps.norm(), motion.speed_max_mps(i) + 1e-9);
-    }
-  }
+  EXPECT_EQ(levels_of(planned->change), 2);
+  EXPECT_LT(to_seconds(planned->duration), 1.05 * ideal_s);
+  EXPECT_GE(planned->least_separation_m, 4.0);
+  const double sampled = least_by_sampling(planned->change);
+  EXPECT_LE(planned->least_separation_m, sampled + 1e-3);
+  EXPECT_NEAR(planned->least_separation_m, sampled, 0.02);
+
+  request.ceiling_m = 23.9;  // a level would be 4 m higher
+  const auto below = plan_change(request);
+  ASSERT_TRUE(below.ok());
+  EXPECT_EQ(below->way, Way::roundabout);
+  EXPECT_EQ(levels_of(below->change), 1);
+  EXPECT_GT(to_seconds(below->duration), 1.1 * ideal_s);
+
+  // Stretched heights: a level is as high as vehicles are to be apart there.
+  request.ceiling_m = 120.0;
+  request.separation.vertical_m = 4.5;
+  const auto higher = plan_change(request);
+  ASSERT_TRUE(higher.ok());
+  EXPECT_EQ(levels_of(higher->change), 2);
+  EXPECT_NEAR(higher->change.roundabout->level_m, 6.0, 1e-9);
+  EXPECT_NEAR(higher->least_separation_m, least_by_sampling(higher->change), 0.02);
+}
+
+TEST(PlanChange, NoLevelIsReachedMoreSteeplyThanAtOneToOne) {
+  Change change = plan_change(swap(32, 40.0, 20.0)).value().change;
+  ASSERT_TRUE(valid(change));
+  const Roundabout good = *change.roundabout;
+  change.roundabout->climb_m = 0.9 * good.level_m;
+  EXPECT_FALSE(valid(change));
+  change.roundabout = good;
+  change.roundabout->level_m = 50.0;  // the rim is 39 m from the starts
+  change.roundabout->climb_m = 100.0;
+  EXPECT_FALSE(valid(change));
+  change.roundabout = good;
+  change.roundabout->level_m = change.roundabout->climb_m = 1e-12;  // it would take for ever
+  EXPECT_FALSE(valid(change));
+  change.roundabout = good;
+  change.roundabout->level_m = -1.0;
+  EXPECT_FALSE(valid(change));
 }
 
 TEST(PlanChange, RefusesWithTheTwoThatAreTooNear) {

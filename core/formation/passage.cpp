@@ -119,10 +119,11 @@ Vec3 Passage::place(std::size_t mover, Grains at) const {
 bool Passage::keeps_clear(Clearance what, std::size_t mover, Grains own_from, Grains own_to,
                           Grains from, Grains to, double apart_m) const {
   if (what == Clearance::vehicle && from >= own_to) return true;
-  const double own_reach = others_[self_].speed_mps * seconds(own_to - own_from) / 2.0;
-  const double reach = others_[mover].speed_mps * seconds(to - from) / 2.0;
   const Grains own_middle = (own_from + own_to) / 2;
   const Grains middle = (from + to) / 2;
+  // Halves of an odd number of grains differ by one: the longer counts.
+  const double own_reach = others_[self_].speed_mps * seconds(own_to - own_middle);
+  const double reach = others_[mover].speed_mps * seconds(to - middle);
   const Vec3 apart = place(self_, own_middle) - place(mover, middle);
   const double d =
       what == Clearance::vehicle ? apart.norm() : std::max(apart.head<2>().norm(), apart.z());

@@ -138,8 +138,8 @@ Team crossing(double before_m) {
   change.limits = kLimits;
   change.separation = kSeparation;
   const double after_m = 80.0 - before_m;
-  change.movers = {{{1}, {{-20.0, 0.0, 30.0}, {60.0, 0.0, 30.0}}, false},
-                   {{2}, {{0.0, -before_m, 20.0}, {0.0, after_m, 20.0}}, false}};
+  change.movers = {{{1}, {{-20.0, 0.0, 30.0}, {60.0, 0.0, 30.0}}, 0},
+                   {{2}, {{0.0, -before_m, 20.0}, {0.0, after_m, 20.0}}, 0}};
   Team team{change, {milliseconds{50}, 0.0}, 3};
   while (team.places.empty() || team.places[0].x() < -1.0) team.tick();
   team.silent = 0;
@@ -180,6 +180,19 @@ TEST(Passage, AntipodalSwapKeepsSeparationAndEnds) {
       EXPECT_GE(team.least, 3.0) << n << " vehicles, seed " << seed;
     }
   }
+}
+
+TEST(Passage, SwapOnLevelsKeepsSeparationWhateverIsLostAndWhoeverStalls) {
+  const auto planned = swap_plan(32, 40.0, 5);
+  EXPECT_TRUE(std::ranges::any_of(planned.change.movers,
+                                  [](const Mover& mover) { return mover.level == 2; }));
+  Team team{planned.change, {.delay = milliseconds{300}, .loss = 0.5}, 5};
+  team.stalled = [](std::size_t i, Instant at) {
+    const double from_s = 5.0 + static_cast<double>(i) * 0.5;  // one after the other, 4 at once
+    return at > at_seconds(from_s) && at < at_seconds(from_s + 2.0);
+  };
+  ASSERT_TRUE(team.run(300.0));
+  EXPECT_GE(team.least, 3.0);
 }
 
 TEST(Passage, WhoStallsIsNeverRunInto) {

@@ -155,27 +155,6 @@ TEST(PlaceAssignment, ExactMethodsAgreeWithEveryAssignment) {
   }
 }
 
-TEST(PlaceAssignment, LeastSumIsThatOfPlanning) {
-  Random random{52};
-  for (const std::size_t count : {2U, 9U, 33U, 100U}) {
-    const Problem problem = random_problem(random, count);
-    const auto size = static_cast<Eigen::Index>(count);
-    Eigen::MatrixXd cost(size, size);
-    for (Eigen::Index i = 0; i < size; ++i) {
-      for (Eigen::Index j = 0; j < size; ++j) {
-        cost(i, j) = (problem.vehicles[static_cast<std::size_t>(i)] -
-                      problem.places[static_cast<std::size_t>(j)])
-                         .norm();
-      }
-    }
-    const auto other = planning::least_sum_assignment(cost);
-    ASSERT_TRUE(other);
-    const PlaceAssignment ours = solved(PlaceMethod::least_sum, problem);
-    EXPECT_NEAR(lengths(ours, problem).sum_m, other->cost, 1e-9);
-    EXPECT_EQ(ours.place_of, other->column_of);  // without ties there is one
-  }
-}
-
 TEST(PlaceAssignment, CertificatesProveRandomAndDegenerateProblems) {
   Random random{53};
   for (const std::size_t count : {1U, 2U, 5U, 8U, 9U, 16U, 31U, 64U, 100U, 200U}) {
@@ -184,6 +163,8 @@ TEST(PlaceAssignment, CertificatesProveRandomAndDegenerateProblems) {
     problems.push_back(random_problem(random, count, 0.0));
     problems.push_back(random_problem(random, count));
     for (Vec3& place : problems.back().places) place += Vec3{2e4, -5e4, 100.0};
+    problems.push_back(random_problem(random, count));  // a formation that moves on, and grows
+    for (Vec3& place : problems.back().places) place = 3.0 * place + Vec3{400.0, 100.0, 0.0};
     for (const Problem& problem : problems) {
       for (const PlaceMethod method : kExact) {
         EXPECT_TRUE(is_proven(solved(method, problem), problem)) << count;
@@ -268,11 +249,11 @@ TEST(PlaceAssignment, EveryWidthGivesTheSameBits) {
     for (const Problem& problem : problems) {
       for (const PlaceMethod method : kExact) {
         PlaceAssignment first;
-        for (const auto width : PlaceSolver::widths()) {
+        for (const auto width : planning::AssignmentSolver::widths()) {
           PlaceSolver solver{width};
           PlaceAssignment result;
           ASSERT_TRUE(solver.solve(method, problem.vehicles, problem.places, result).ok());
-          if (width == PlaceSolver::widths().front()) first = result;
+          if (width == planning::AssignmentSolver::widths().front()) first = result;
           EXPECT_EQ(result.place_of, first.place_of);
           EXPECT_EQ(result.certificate.place_price, first.certificate.place_price);
           EXPECT_EQ(result.certificate.crowded_vehicles, first.certificate.crowded_vehicles);

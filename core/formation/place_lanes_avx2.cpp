@@ -8,10 +8,4 @@ void place_fill_avx2(const PlaceTable& table, const PlacePoints& rows, const Pla
   PlaceLanes<4>::fill(table, rows, columns, squared);
 }
 
-void place_least_sum_avx2(const PlaceTable& table) { PlaceLanes<4>::least_sum(table); }
-
-void place_least_largest_avx2(const PlaceTable& table, PlaceThreshold& result) {
-  PlaceLanes<4>::least_largest(table, result);
-}
-
 }  // namespace skein::formation

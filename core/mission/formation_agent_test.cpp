@@ -37,7 +37,7 @@ formation::Change ahead(std::uint32_t number) {
   formation::Change change;
   change.number = number;
   change.start = at_seconds(2.0);
-  change.movers = {{kSelf, {{0.0, 0.0, 10.0}, {20.0, 0.0, 10.0}}, false}};
+  change.movers = {{kSelf, {{0.0, 0.0, 10.0}, {20.0, 0.0, 10.0}}, 0}};
   return change;
 }
 
@@ -78,7 +78,7 @@ TEST(FormationAgent, TakesUpNoChangeWhoseTimesCannotBeCounted) {
   bad[0].limits.speed_mps = 1e-300;
   bad[1].limits.jerk_mps3 = 1e-300;
   bad[2].roundabout = formation::Roundabout{{-10.0, 0.0}, 1e-300};
-  bad[2].movers[0].around = true;
+  bad[2].movers[0].level = 1;
   for (const formation::Change& change : bad) {
     Copter copter;
     copter.tell(change);

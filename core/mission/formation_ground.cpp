@@ -200,6 +200,9 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
   request.separation = separation();
   request.reserve_m = config_.reserve_m;
   request.ceiling_m = config_.ceiling_m;
+  if (config_.fence.exists()) {
+    request.ceiling_m = std::min(request.ceiling_m, config_.fence.height_max_m);
+  }
   if (order.kind != OrderKind::land) {
     if (auto stranger = unknown(); !stranger.empty()) {
       return Error{stranger + " and may be in the way; land, or wait until it is heard"};
@@ -218,7 +221,7 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
   auto room = formation::make_room(request, [&](const Transfer& way) {
     // Those that stand on the ground are put further apart.
     if (way.from.z() < std::min(kSidewaysAbove_m, config_.rally.centre.z())) return false;
-    const Change alone{.movers = {{way.vehicle, {way.from, way.to}, false}}};
+    const Change alone{.movers = {{way.vehicle, {way.from, way.to}, 0}}};
     return may_be_flown({way}).ok() && within_fence(alone).ok();
   });
   if (!room) return planned.error();

@@ -2,16 +2,22 @@
 #include "skein/planning/assignment.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
+#include "assignment_lanes.hpp"
 #include "skein/base/assert.hpp"
 
 namespace skein::planning {
 namespace {
 
+using Width = AssignmentSolver::Width;
+using Baseline = AssignmentLanes<2>;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+/// Stands for -infinity, of which nothing can be subtracted.
+constexpr double kLowest = std::numeric_limits<double>::lowest();
+constexpr std::size_t kRowsOfDoubles = 6;  ///< before the entries
+constexpr std::size_t kRowsOfInts = 6;
 
 std::vector<double> by_rows(const Eigen::MatrixXd& cost) {
   std::vector<double> entries;
@@ -36,113 +42,125 @@ std::optional<Assignment> least_sum_of(AssignmentSolver& solver, std::span<const
 
 }  // namespace
 
-void AssignmentSolver::start(std::size_t rows, std::size_t columns, std::span<int> column_of) {
+std::span<const Width> AssignmentSolver::widths() {
+  static constexpr std::array<Width, 2> kWidths = {Width::baseline, Width::avx2};
+#if defined(__x86_64__)
+  static const std::size_t count = __builtin_cpu_supports("avx2") ? 2 : 1;
+#else
+  static const std::size_t count = 1;
+#endif
+  return {kWidths.data(), count};
+}
+
+AssignmentSolver::AssignmentSolver(Width width) : width_{width} {
+  SKEIN_ASSERT(static_cast<std::size_t>(width) < widths().size());
+}
+
+struct AssignmentSolver::Layout {
+  AssignmentTable table;
+  int* crowded;
+  int* near;
+};
+
+AssignmentSolver::Table AssignmentSolver::table(std::size_t rows, std::size_t columns) {
   SKEIN_ASSERT(rows <= columns);
-  row_price_.assign(rows, 0.0);
-  column_price_.assign(columns, 0.0);
-  row_of_.assign(columns, -1);
-  std::fill(column_of.begin(), column_of.end(), -1);
+  rows_ = rows;
+  columns_ = columns;
+  stride_ = (columns + kAssignmentLine - 1) / kAssignmentLine * kAssignmentLine;
+  const std::size_t lines = (rows + kRowsOfDoubles) * (stride_ / kAssignmentLine);
+  if (numbers_.size() < lines) numbers_.resize(lines);
+  if (indices_.size() < kRowsOfInts * stride_) indices_.resize(kRowsOfInts * stride_);
+  if (stride_ == 0) return {nullptr, 0};
+  return {numbers_.data()->values.data() + kRowsOfDoubles * stride_, stride_};
 }
 
-void AssignmentSolver::start_row() {
-  distance_.assign(row_of_.size(), kInfinity);
-  predecessor_.assign(row_of_.size(), -1);
-  done_.assign(row_of_.size(), 0);
-}
-
-/// Swaps the owners along the alternating path from `row` to the free column `sink`.
-void AssignmentSolver::take_path(std::size_t row, std::size_t sink, std::span<int> column_of) {
-  auto column = static_cast<int>(sink);
-  while (true) {
-    const int from = predecessor_[static_cast<std::size_t>(column)];
-    row_of_[static_cast<std::size_t>(column)] = from;
-    std::swap(column, column_of[static_cast<std::size_t>(from)]);
-    if (static_cast<std::size_t>(from) == row) return;
+AssignmentSolver::Layout AssignmentSolver::lay_out(std::span<int> column_of) {
+  SKEIN_ASSERT(column_of.size() == rows_);
+  double* number = numbers_.data()->values.data();
+  int* index = indices_.data();
+  Layout layout{};
+  AssignmentTable& t = layout.table;
+  t.rows = rows_;
+  t.columns = columns_;
+  t.stride = stride_;
+  t.column_of = column_of.data();
+  for (double** row :
+       {&t.price, &t.distance, &t.taken, &t.reach, &t.base, &t.kept_price, &t.cost}) {
+    *row = number;
+    number += stride_;
   }
+  for (int** row :
+       {&layout.crowded, &layout.near, &t.row_of, &t.waiting, &t.seen_row, &t.seen_column}) {
+    *row = index;
+    index += stride_;
+  }
+  return layout;
 }
 
-/// Dijkstra from the row `current` to the nearest free column; kNone where none is reached. `least`
-/// is how far the search has come. `onward(row, least)` says how far it is by way of that row:
-/// a function of an entry of its and the entry's column.
-template <typename Onward>
-std::size_t AssignmentSolver::nearest_free(std::span<const double> cost, std::size_t current,
-                                           double& least, const Onward& onward) {
-  const std::size_t columns = row_of_.size();
-  start_row();
-  std::size_t row = current;
-  while (true) {
-    const std::span<const double> entries = cost.subspan(row * columns, columns);
-    const auto through = onward(row, least);
-    std::size_t nearest = kNone;
-    double nearest_distance = kInfinity;
-    for (std::size_t column = 0; column < columns; ++column) {
-      if (done_[column] != 0) continue;
-      const double reached = through(entries[column], column);
-      if (reached < distance_[column]) {
-        distance_[column] = reached;
-        predecessor_[column] = static_cast<int>(row);
-      }
-      const double distance = distance_[column];
-      const bool free_at_tie = distance == nearest_distance && nearest != kNone &&
-                               row_of_[nearest] >= 0 && row_of_[column] < 0;
-      if (distance < nearest_distance || free_at_tie) {
-        nearest = column;
-        nearest_distance = distance;
-      }
-    }
-    if (nearest == kNone) return kNone;
-    least = nearest_distance;
-    done_[nearest] = 1;
-    if (row_of_[nearest] < 0) return nearest;
-    row = static_cast<std::size_t>(row_of_[nearest]);
+void AssignmentSolver::fill(std::span<const double> cost, std::size_t columns, std::size_t rows,
+                            double least) {
+  SKEIN_ASSERT(cost.size() == rows * columns);
+  const Table to = table(rows, columns);
+  for (std::size_t row = 0; row < rows; ++row) {
+    double* const entries = to.entries + row * to.stride;
+    for (std::size_t j = 0; j < columns; ++j) entries[j] = std::max(least, cost[row * columns + j]);
+    std::fill(entries + columns, entries + to.stride, kInfinity);
   }
 }
 
 bool AssignmentSolver::least_sum(std::span<const double> cost, std::size_t columns,
                                  std::span<int> column_of) {
-  const std::size_t rows = column_of.size();
-  SKEIN_ASSERT(cost.size() == rows * columns);
-  start(rows, columns, column_of);
-  // Lengths add up, over reduced costs.
-  const auto onward = [this](std::size_t row, double least) {
-    return [this, base = least - row_price_[row]](double entry, std::size_t column) {
-      return base + entry - column_price_[column];
-    };
-  };
-  for (std::size_t current = 0; current < rows; ++current) {
-    double least = 0.0;
-    const std::size_t sink = nearest_free(cost, current, least, onward);
-    if (sink == kNone) return false;
-    row_price_[current] += least;
-    for (std::size_t column = 0; column < columns; ++column) {
-      if (done_[column] == 0 || column == sink) continue;
-      const double slack = least - distance_[column];
-      row_price_[static_cast<std::size_t>(row_of_[column])] += slack;
-      column_price_[column] -= slack;
-    }
-    take_path(current, sink, column_of);
-  }
-  return true;
+  fill(cost, columns, column_of.size(), kLowest);
+  return least_sum(std::span<const double>{}, column_of);
 }
 
-/// The assignment of the rows so far stays within the threshold; by Berge's theorem one more row
-/// fits within the least threshold at which an alternating path leads from it to a free column.
+bool AssignmentSolver::least_sum(std::span<const double> row_guess, std::span<int> column_of) {
+  SKEIN_ASSERT(row_guess.empty() || row_guess.size() == rows_);
+  if (rows_ == 0) return true;
+  const Layout layout = lay_out(column_of);
+  const double* const guess = row_guess.empty() ? nullptr : row_guess.data();
+#if defined(__x86_64__)
+  if (width_ == Width::avx2) return least_sum_avx2(layout.table, guess);
+#endif
+  return Baseline::least_sum(layout.table, guess);
+}
+
 std::optional<double> AssignmentSolver::bottleneck(std::span<const double> cost,
                                                    std::size_t columns, std::span<int> column_of) {
-  const std::size_t rows = column_of.size();
-  SKEIN_ASSERT(cost.size() == rows * columns);
-  start(rows, columns, column_of);
-  // The length of a path is its largest entry.
-  const auto onward = [](std::size_t, double threshold) {
-    return [threshold](double entry, std::size_t) { return std::max(threshold, entry); };
-  };
-  double threshold = -kInfinity;
-  for (std::size_t current = 0; current < rows; ++current) {
-    const std::size_t sink = nearest_free(cost, current, threshold, onward);
-    if (sink == kNone) return std::nullopt;
-    take_path(current, sink, column_of);
+  fill(cost, columns, column_of.size(), kLowest);
+  const auto found = bottleneck(column_of);
+  return found && *found == kLowest ? -kInfinity : found;
+}
+
+std::optional<double> AssignmentSolver::bottleneck(std::span<int> column_of) {
+  crowded_ = near_ = 0;
+  if (rows_ == 0) return -kInfinity;
+  const Layout layout = lay_out(column_of);
+  AssignmentThreshold found{0.0, 0, 0, layout.crowded, layout.near};
+#if defined(__x86_64__)
+  if (width_ == Width::avx2) {
+    least_largest_avx2(layout.table, found);
+  } else {
+    Baseline::least_largest(layout.table, found);
   }
-  return threshold;
+#else
+  Baseline::least_largest(layout.table, found);
+#endif
+  if (found.threshold == kInfinity) return std::nullopt;
+  crowded_ = found.rows;
+  near_ = found.columns;
+  return found.threshold;
+}
+
+std::span<const double> AssignmentSolver::column_prices() const {
+  if (columns_ == 0) return {};
+  return {numbers_.data()->values.data(), columns_};
+}
+
+std::span<const int> AssignmentSolver::crowded_rows() const { return {indices_.data(), crowded_}; }
+
+std::span<const int> AssignmentSolver::near_columns() const {
+  return {indices_.data() + stride_, near_};
 }
 
 std::optional<Assignment> least_sum_assignment(const Eigen::MatrixXd& cost) {

@@ -120,5 +120,143 @@ TEST(Assignment, ManyColumns) {
   EXPECT_GE(largest_of(cost, *bottleneck), cost.rowwise().minCoeff().maxCoeff());
 }
 
+/// A table, and what a solver makes of it.
+struct Table {
+  std::size_t rows;
+  std::size_t columns;
+  std::vector<double> cost;
+  [[nodiscard]] double at(std::size_t row, int column) const {
+    return cost[row * columns + static_cast<std::size_t>(column)];
+  }
+};
+
+/// Some with ties, some with entries that are forbidden, square or not.
+std::vector<Table> tables(Random& random) {
+  std::vector<Table> result;
+  for (int i = 0; i < 120; ++i) {
+    const std::size_t columns = 1 + random.index(i < 100 ? 24 : 90);
+    const std::size_t rows = i % 2 == 0 ? columns : 1 + random.index(columns);
+    Table table{rows, columns, std::vector<double>(rows * columns)};
+    const double forbidden = i % 3 == 0 ? 0.2 : 0.0;
+    for (double& entry : table.cost) {
+      entry = i % 4 < 2 ? static_cast<double>(random.index(9)) : random.uniform(-50.0, 1000.0);
+      if (random.chance(forbidden)) entry = kInfinity;
+    }
+    result.push_back(table);
+  }
+  return result;
+}
+
+/// Weak duality: no assignment costs less than the sum of all column prices and of what each row's
+/// least entry is without them, where no price is above 0 of columns that may stay free.
+void expect_proven(const Table& table, std::span<const int> column_of,
+                   std::span<const double> price) {
+  ASSERT_EQ(price.size(), table.columns);
+  double sum = 0.0;
+  double bound = 0.0;
+  for (const double column : price) {
+    bound += column;
+    if (table.rows < table.columns) {
+      EXPECT_LE(column, 0.0);
+    }
+  }
+  for (std::size_t row = 0; row < table.rows; ++row) {
+    sum += table.at(row, column_of[row]);
+    double least = kInfinity;
+    for (std::size_t j = 0; j < table.columns; ++j) {
+      least = std::min(least, table.cost[row * table.columns + j] - price[j]);
+    }
+    bound += least;
+  }
+  EXPECT_NEAR(sum, bound, 1e-9 * (1.0 + std::abs(sum)));
+  EXPECT_EQ(std::set<int>(column_of.begin(), column_of.end()).size(), table.rows);
+}
+
+TEST(AssignmentSolver, ProvesWhatItFindsWithEveryWidthTheSame) {
+  Random random{23};
+  int solved = 0;
+  for (const Table& table : tables(random)) {
+    std::vector<int> first;
+    std::vector<double> first_price;
+    for (const auto width : AssignmentSolver::widths()) {
+      AssignmentSolver solver{width};
+      std::vector<int> column_of(table.rows);
+      if (!solver.least_sum(table.cost, table.columns, column_of)) continue;
+      const auto price = solver.column_prices();
+      expect_proven(table, column_of, price);
+      ++solved;
+      if (first.empty()) {
+        first = column_of;
+        first_price.assign(price.begin(), price.end());
+      }
+      EXPECT_EQ(column_of, first);
+      EXPECT_TRUE(std::ranges::equal(price, first_price));
+    }
+  }
+  EXPECT_GT(solved, 150);
+}
+
+TEST(AssignmentSolver, AnyGuessGivesTheSameSum) {
+  Random random{24};
+  AssignmentSolver solver;
+  for (const Table& table : tables(random)) {
+    std::vector<int> column_of(table.rows);
+    if (!solver.least_sum(table.cost, table.columns, column_of)) continue;
+    const auto sum = [&] {
+      double result = 0.0;
+      for (std::size_t row = 0; row < table.rows; ++row) result += table.at(row, column_of[row]);
+      return result;
+    };
+    const double without = sum();
+    std::vector<double> guess(table.rows);
+    for (double& price : guess) price = random.uniform(-300.0, 300.0);
+    ASSERT_TRUE(solver.least_sum(guess, column_of));  // the entries are still there
+    EXPECT_NEAR(sum(), without, 1e-9 * (1.0 + std::abs(without)));
+    expect_proven(table, column_of, solver.column_prices());
+  }
+}
+
+TEST(AssignmentSolver, BottlenecksAreProvenByRowsWithTooFewColumns) {
+  Random random{25};
+  AssignmentSolver solver;
+  int proven = 0;
+  for (const Table& table : tables(random)) {
+    std::vector<int> column_of(table.rows);
+    const auto threshold = solver.bottleneck(table.cost, table.columns, column_of);
+    if (!threshold) continue;
+    const auto crowded = solver.crowded_rows();
+    const auto near = solver.near_columns();
+    const std::set<int> among(near.begin(), near.end());
+    EXPECT_EQ(among.size(), near.size());
+    EXPECT_GT(std::set<int>(crowded.begin(), crowded.end()).size(), near.size());
+    double largest = -kInfinity;
+    for (std::size_t row = 0; row < table.rows; ++row) {
+      largest = std::max(largest, table.at(row, column_of[row]));
+    }
+    EXPECT_EQ(largest, *threshold);
+    for (const int row : crowded) {
+      for (int j = 0; j < static_cast<int>(table.columns); ++j) {
+        if (among.contains(j)) continue;
+        EXPECT_GE(table.at(static_cast<std::size_t>(row), j), *threshold);
+      }
+    }
+    ++proven;
+  }
+  EXPECT_GT(proven, 80);
+}
+
+TEST(AssignmentSolver, EntriesMayBeOfNoCostAtAll) {
+  AssignmentSolver solver;
+  std::vector<int> column_of(2);
+  const std::vector<double> free{-kInfinity, kInfinity, 5.0, kInfinity, -kInfinity, -kInfinity};
+  EXPECT_EQ(solver.bottleneck(free, 3, column_of), -kInfinity);
+  const std::vector<double> contested{-kInfinity, 4.0, 7.0, -kInfinity, 9.0, kInfinity};
+  EXPECT_EQ(solver.bottleneck(contested, 3, column_of), 4.0);
+  const std::vector<double> impossible{-kInfinity, kInfinity, -kInfinity, kInfinity};
+  EXPECT_EQ(solver.bottleneck(impossible, 2, column_of), std::nullopt);
+  EXPECT_FALSE(solver.least_sum(std::vector<double>{1.0, kInfinity, 2.0, kInfinity}, 2, column_of));
+  EXPECT_FALSE(solver.least_sum(std::vector<double>{1.0, 2.0, kInfinity, kInfinity}, 2, column_of));
+}
+
 }  // namespace
 }  // namespace skein::planning

@@ -577,8 +577,8 @@ TEST(Picture, AFormationIsInPlaceWhenAllAre) {
   change.start = at_seconds(0.0);
   change.limits = {5.0, 2.0, 4.0};
   change.separation = {2.0, 4.0};
-  change.movers = {{{1}, {{0.0, 0.0, 5.0}, {10.0, 0.0, 5.0}}, false},
-                   {{2}, {{0.0, 9.0, 5.0}, {10.0, 9.0, 5.0}}, false}};
+  change.movers = {{{1}, {{0.0, 0.0, 5.0}, {10.0, 0.0, 5.0}}, 0},
+                   {{2}, {{0.0, 9.0, 5.0}, {10.0, 9.0, 5.0}}, 0}};
   desk.hear(change, kGroundStation, 0.0);
   const auto status = [&](VehicleId vehicle, std::uint32_t flown, const Vec3& at, double seconds) {
     mission::FormationStatus s;

@@ -125,7 +125,7 @@ TEST(AirCarrier, TheLongestMessageArrives) {
   formation::Change change;
   change.stages = formation::kStagesMax;
   for (std::uint16_t id = 1; id <= formation::kMoversMax; ++id) {
-    change.movers.push_back({VehicleId{id}, {}, false});
+    change.movers.push_back({VehicleId{id}, {}, 0});
     change.movers.back().points.assign(formation::kMoverPointsMax, Vec3::Zero());
   }
   const auto configs = team(1, true);

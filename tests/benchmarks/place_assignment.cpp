@@ -38,6 +38,25 @@ std::vector<Problem> random_problems(std::size_t count, double height_m) {
   return problems;
 }
 
+/// Blocks of vehicles 5 m apart that move on by 1 km and become wider.
+std::vector<Problem> far_grids(std::size_t count) {
+  const auto block = [count](double east_m, double north_m, double share) {
+    const auto width =
+        static_cast<std::size_t>(std::ceil(share * std::sqrt(static_cast<double>(count))));
+    std::vector<Vec3> points;
+    for (std::size_t i = 0; i < count; ++i) {
+      points.emplace_back(east_m + 5.0 * static_cast<double>(i % width),
+                          north_m + 5.0 * static_cast<double>(i / width), 0.0);
+    }
+    return points;
+  };
+  std::vector<Problem> problems;
+  for (const double wider : {1.0, 1.25, 1.5}) {
+    problems.push_back({block(0.0, 0.0, 1.0), block(1000.0, 300.0, wider)});
+  }
+  return problems;
+}
+
 /// Shortest augmenting paths, row by row, without initialisation, as in D. F. Crouse, "On
 /// implementing 2D rectangular assignment algorithms", IEEE Trans. Aerosp. Electron. Syst. 52(4),
 /// 2016, section II.B: the peer. It keeps its buffers as well.
@@ -146,9 +165,16 @@ void median_of_problems(benchmark::State& state, const std::vector<Problem>& pro
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations()));
 }
 
+/// Where the height is kFar, far grids.
+constexpr double kFar = -1.0;
+std::vector<Problem> problems_of(benchmark::State& state, double height_m) {
+  const auto count = static_cast<std::size_t>(state.range(0));
+  return height_m == kFar ? far_grids(count) : random_problems(count, height_m);
+}
+
 /// From positions to places and prices.
 void ours(benchmark::State& state, PlaceMethod method, double height_m) {
-  const auto problems = random_problems(static_cast<std::size_t>(state.range(0)), height_m);
+  const auto problems = problems_of(state, height_m);
   PlaceSolver solver;
   PlaceAssignment result;
   median_of_problems(state, problems, [&](const Problem& problem) {
@@ -161,7 +187,7 @@ void ours(benchmark::State& state, PlaceMethod method, double height_m) {
 
 /// The same with the peer: its table of costs from positions, and its assignment.
 void crouse(benchmark::State& state, PlaceMethod method, double height_m) {
-  const auto problems = random_problems(static_cast<std::size_t>(state.range(0)), height_m);
+  const auto problems = problems_of(state, height_m);
   Crouse solver;
   std::vector<double> cost;
   median_of_problems(state, problems, [&](const Problem& problem) {
@@ -179,6 +205,11 @@ void crouse(benchmark::State& state, PlaceMethod method, double height_m) {
 
 void sizes(benchmark::internal::Benchmark* benchmark) {
   benchmark->Arg(5)->Arg(32)->Arg(100)->Arg(1000)->UseManualTime();
+  benchmark->Iterations(1)->Repetitions(5)->ReportAggregatesOnly();
+}
+
+void large(benchmark::internal::Benchmark* benchmark) {
+  benchmark->Arg(1000)->UseManualTime();
   benchmark->Iterations(1)->Repetitions(5)->ReportAggregatesOnly();
 }
 
@@ -206,5 +237,17 @@ BENCHMARK_CAPTURE(crouse, sum, PlaceMethod::least_sum, kFlat)
 BENCHMARK_CAPTURE(ours, longest, PlaceMethod::least_longest, kFlat)
     ->Name("least_longest/skein/plane")
     ->Apply(sizes);
+BENCHMARK_CAPTURE(ours, far, PlaceMethod::least_squares, kFar)
+    ->Name("least_squares/skein/far_grid")
+    ->Apply(large);
+BENCHMARK_CAPTURE(ours, far_sum, PlaceMethod::least_sum, kFar)
+    ->Name("least_sum/skein/far_grid")
+    ->Apply(large);
+BENCHMARK_CAPTURE(crouse, far_sum, PlaceMethod::least_sum, kFar)
+    ->Name("least_sum/crouse/far_grid")
+    ->Apply(large);
+BENCHMARK_CAPTURE(ours, far_longest, PlaceMethod::least_longest, kFar)
+    ->Name("least_longest/skein/far_grid")
+    ->Apply(large);
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -46,7 +47,8 @@ class ChangeMotion {
                                         double enough = 0.0) const;
 
  private:
-  /// Straight, or straight to a rim, along it and straight on; heights in proportion to the way.
+  /// Straight, or straight to a rim, along it and straight on; heights in proportion to the way,
+  /// and what its level adds. Nobody is faster on it than on a straight line of its length.
   struct Leg {
     Vec3 from{0.0, 0.0, 0.0};
     Vec3 to{0.0, 0.0, 0.0};
@@ -56,12 +58,22 @@ class ChangeMotion {
     double in_m = 0.0;     ///< to the rim
     double arc_m = 0.0;    ///< along it
     double rim_rad = 0.0;  ///< where the rim is reached, as seen from its centre
+    double over_m = 0.0;   ///< height of its level above the line
+    double climb_m = 0.0;  ///< to that height, and down again
+  };
+  /// How far it is up on a leg's level, and how steeply it rises there, and how that grows.
+  struct Climb {
+    double height_m = 0.0;
+    double slope = 0.0;
+    double bend_per_m = 0.0;
   };
   struct Stage {
     Duration begin{};
     MotionProfile profile;
   };
-  [[nodiscard]] Leg leg_between(const Vec3& from, const Vec3& to, bool around) const;
+  [[nodiscard]] Leg leg_between(const Vec3& from, const Vec3& to, std::uint8_t level) const;
+  [[nodiscard]] static double rise_m(const Leg& leg);
+  [[nodiscard]] static Climb climb_at(const Leg& leg, double along_m);
   [[nodiscard]] const Leg& leg(std::size_t mover, std::size_t stage) const {
     return legs_[stage * movers_ + mover];
   }
@@ -70,8 +82,16 @@ class ChangeMotion {
   [[nodiscard]] double least_on_stage(std::size_t stage, std::size_t a, std::size_t b,
                                       double height_factor, double enough) const;
 
-  [[nodiscard]] double least_between(const Leg& first, const Leg& second, double from, double to,
-                                     double height_factor, double enough) const;
+  [[nodiscard]] Vec3 apart(const Leg& first, const Leg& second, double share,
+                           double height_factor) const;
+  struct Known {
+    double least = std::numeric_limits<double>::infinity();
+    double enough = 0.0;  ///< below it the search ends
+    bool exact = true;    ///< else it may be less by what is looked over
+  };
+  /// The least distance at both ends, where one of the two goes around, is known already.
+  void look_between(const Leg& first, const Leg& second, double from, double to,
+                    double height_factor, Known& known) const;
 
   std::size_t movers_ = 0;
   std::optional<Roundabout> roundabout_;
@@ -85,8 +105,8 @@ class ChangeMotion {
 inline constexpr double kStopWithin_s = 6.0;
 
 /// That a change from outside can be flown at all: finite numbers, points for every stage, legs
-/// that go around start and end outside the rim, limits above 0 that stop within kStopWithin_s, no
-/// vehicle twice, at most kStagesMax stages.
+/// that go around start and end outside the rim, and far enough for their level, limits above 0
+/// that stop within kStopWithin_s, no vehicle twice, at most kStagesMax stages.
 [[nodiscard]] bool valid(const Change& change);
 
 }  // namespace skein::formation

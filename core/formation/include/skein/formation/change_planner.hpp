@@ -43,7 +43,8 @@ struct ChangeRequest {
 /// How a change keeps vehicles apart; the first that does is taken.
 enum class Way : std::uint8_t {
   straight,    ///< straight lines under common timing
-  roundabout,  ///< who would come too near goes around a disc, all the same way round
+  roundabout,  ///< who would come too near goes around a disc, all the same way round; many on
+               ///< levels
   layers,      ///< who would come too near crosses at a height of its own
   track,       ///< planes: places that move along a track
   count
@@ -63,8 +64,9 @@ struct PlannedChange {
 /// separation. Straight lines under common timing suffice for every assignment of least squares
 /// whose starts and places are 2 sqrt(2) R apart, R half the separation (Turpin, Mohta, Michael and
 /// Kumar 2014, theorem 3.3, "CAPT"). The disc of a roundabout is the least on whose rim N vehicles
-/// evenly spread are apart, d / (2 sin(pi / N)), or as much larger as it takes. Layers need N
-/// heights at most. Fails, with the two that come nearest, where the starts or the places
+/// evenly spread are apart, d / (2 sin(pi / N)), or as much larger as it takes; N is of one level,
+/// and there are more where each spares a twentieth of the duration. Layers need N heights at most.
+/// Fails, with the two that come nearest, where the starts or the places
 /// themselves are too near, or the ceiling too low. Cost: of n^2 pairs.
 [[nodiscard]] Result<PlannedChange> plan_change(const ChangeRequest& request);
 

@@ -11,6 +11,7 @@
 #include "skein/base/attitude.hpp"
 #include "skein/base/random.hpp"
 #include "skein/base/result.hpp"
+#include "skein/planning/assignment.hpp"
 #include "skein/planning/budget.hpp"
 
 namespace skein::formation {
@@ -69,18 +70,15 @@ inline constexpr double kPlaceCoordinateMax_m = 1e8;
 /// Squared legs longer than the longest by no more than this share count as equally long.
 inline constexpr double kEqualLegs = 1e-12;
 
-/// The exact methods. It keeps its buffers, and those of the result: repeated calls of one size do
-/// not allocate. O(n^3); deterministic, the same bits on every processor (AVX2 or plain code,
-/// chosen at run time).
+/// The exact methods, by planning's solver. It keeps its buffers, and those of the result: repeated
+/// calls of one size do not allocate. O(n^3); deterministic, the same bits on every processor.
 class PlaceSolver {
  public:
-  enum class Width : std::uint8_t { baseline, avx2 };
-  /// What this processor can do, narrowest first.
-  [[nodiscard]] static std::span<const Width> widths();
+  using Width = planning::AssignmentSolver::Width;
 
-  PlaceSolver() : PlaceSolver{widths().back()} {}
-  /// Precondition: one of widths().
-  explicit PlaceSolver(Width width);
+  PlaceSolver() : PlaceSolver{planning::AssignmentSolver::widths().back()} {}
+  /// Precondition: one of AssignmentSolver::widths().
+  explicit PlaceSolver(Width width) : width_{width}, solver_{width} {}
 
   /// Errors: method is colony; counts differ; a coordinate that is not finite or too great.
   /// The result is untouched then.
@@ -88,15 +86,21 @@ class PlaceSolver {
                                    std::span<const Vec3> places, PlaceAssignment& result);
 
  private:
-  struct alignas(64) Line {
-    std::array<double, 8> values;
+  struct Columns {
+    std::vector<double> x;
+    std::vector<double> y;
+    std::vector<double> z;
   };
-  struct Layout;
-  [[nodiscard]] Layout lay_out(std::size_t count);
+  static void spread(std::span<const Vec3> points, const Vec3& origin, std::size_t stride,
+                     Columns& to);
+  [[nodiscard]] std::span<const double> guess(PlaceMethod method, std::span<const Vec3> vehicles,
+                                              std::span<const Vec3> places);
 
   Width width_;
-  std::vector<Line> numbers_;
-  std::vector<int> indices_;
+  planning::AssignmentSolver solver_;
+  Columns vehicles_;
+  Columns places_;
+  std::vector<double> guess_;
 };
 
 /// The paper gives none of these; they are tuned on random instances of 5 and 32 vehicles.
