@@ -66,9 +66,6 @@ struct FaultParams {
   std::size_t taken_back = 0;   ///< sites whose grant the operator takes back
   bool slow_operator = false;   ///< decisions late, refused, or only after a fixed moment
   bool sites_together = false;  ///< all sites are reported at one moment: several leaders
-
-  /// The larger of each.
-  FaultParams& add(const FaultParams& other);
 };
 
 /// "lossy", "lossy,crash", ...: the profiles together. `mixed` draws several with the seed. Fails
