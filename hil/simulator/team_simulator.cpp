@@ -181,8 +181,9 @@ class Team {
 
   // --- faults ---
 
-  void tell(Instant now, FaultEvent::Kind kind, VehicleId vehicle, std::string text = {}) const {
-    if (observer_.fault) observer_.fault({now, kind, vehicle, std::move(text)});
+  void tell(Instant now, FaultEvent::Kind kind, VehicleId vehicle, std::string text = {},
+            Duration lasts = {}) const {
+    if (observer_.fault) observer_.fault({now, kind, vehicle, std::move(text), lasts});
   }
 
   void play_faults(Instant now) {
@@ -301,12 +302,13 @@ class Team {
 
   /// What comes to it waits for it; its aircraft flies on by the guidance that it has.
   bool stall_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
+    const Duration lasts = fault.lasts.value_or(Duration{});
     for (const VehicleId id : who) {
       const std::size_t i = index_of(id);
       if (!nodes_[i].on) continue;
-      stands_until_[i] = std::max(stands_until_[i], now + fault.lasts.value_or(Duration{}));
+      stands_until_[i] = std::max(stands_until_[i], now + lasts);
       tell(now, FaultEvent::Kind::stands_still, id,
-           fmt::format("for {:.2f} s", to_seconds(fault.lasts.value_or(Duration{}))));
+           fmt::format("for {:.2f} s", to_seconds(lasts)), lasts);
     }
     return true;
   }

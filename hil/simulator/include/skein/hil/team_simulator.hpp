@@ -102,6 +102,7 @@ struct FaultEvent {
   Kind kind = Kind::healed;
   VehicleId vehicle;  ///< where it applies
   std::string text;
+  Duration lasts{};  ///< that a program stands still
 };
 
 /// A body as whoever watches from outside sees it.
