@@ -28,6 +28,9 @@ constexpr double kSiteRoom_m = 60.0;
 constexpr double kEverywhere_m = 1e6;
 constexpr Duration kHeldBackMax = seconds{2};
 constexpr double kGustMax_mps = 1.5;
+constexpr double kLayer_m = 15.0;
+/// From here on vehicles are numbered that fly under a number of the team.
+constexpr std::size_t kDoubles = 60000;
 /// Of all together: as much as a coalition of eight needs for its bids to arrive in time.
 constexpr double kNarrow_bytes_per_s = 12e3;
 /// What the operator orders whose battery has fallen, and when; once more where it was not heard.
@@ -191,6 +194,7 @@ constexpr Raise kOrders = [](FaultParams& p) {
 constexpr Raise kClock = [](FaultParams& p) { p.wrong_clock = true; };
 constexpr Raise kTakenBack = [](FaultParams& p) { raise(p.taken_back, 2); };
 constexpr Raise kStall = [](FaultParams& p) { raise(p.stalls, 4); };
+constexpr Raise kDouble = [](FaultParams& p) { raise(p.doubles, 1); };
 constexpr Raise kCovered = [](FaultParams& p) { raise(p.covered, 1); };
 constexpr Raise kBattery = [](FaultParams& p) { raise(p.batteries, 2); };
 constexpr Raise kWind = [](FaultParams& p) { raise(p.wind_mps, 5.0); };
@@ -218,6 +222,7 @@ constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
                                Profile{"taken-back", kTakenBack},
                                Profile{"stall", kStall},
                                Profile{"covered", kCovered},
+                               Profile{"double", kDouble, nullptr, true},
                                Profile{"battery", kBattery, nullptr, true},
                                Profile{"wind", kWind, nullptr, true},
                                Profile{"narrow", kNarrow, nullptr, true}};
@@ -535,6 +540,20 @@ void draw_wrong_clock(Random& random, TeamMission& mission) {
   mission.faults.push_back({{}, {}, ClockOff{whose, random.chance(0.5) ? off : -off}});
 }
 
+/// Another vehicle of that kind takes off where one of the team did, in a layer of its own: the
+/// numbers are a mistake, the heights are not.
+void draw_double(Random& random, TeamMission& mission, Duration phase) {
+  SimulatedVehicle other = mission.vehicles[random.index(mission.vehicles.size())];
+  const Instant at = Instant{} + between(random, Duration{}, phase);
+  for (const auto& v : mission.vehicles) {
+    other.spec.height_m = std::max(other.spec.height_m, v.spec.height_m + kLayer_m);
+  }
+  other.flies_as = other.number();
+  other.spec.id = VehicleId{static_cast<std::uint16_t>(kDoubles + mission.vehicles.size())};
+  mission.faults.push_back({{.not_before = at}, {}, LateStart{other.spec.id}});
+  mission.vehicles.push_back(std::move(other));
+}
+
 }  // namespace
 
 Fault draw_stall(Random& random, Duration phase) {
@@ -622,6 +641,9 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
     faults.push_back(draw_stall(random, params.phase));
   }
   draw_covered(random, mission, params);
+  for (std::size_t n = count(random, params.doubles); n > 0; --n) {
+    draw_double(random, mission, params.phase);
+  }
 }
 
 }  // namespace skein::hil

@@ -153,6 +153,34 @@ TEST(Faults, WhoStartsAnewAfterTheHealingIsToldOfWhatNobodyCouldBeToldOf) {
   EXPECT_TRUE(fly(*mission).run.sites_done);
 }
 
+TEST(Faults, TwoUnderOneNumberAreToldAndTakeUpNothing) {
+  auto mission = drawn("double", 3);
+  ASSERT_EQ(mission.vehicles.size(), 9U);
+  const SimulatedVehicle& other = mission.vehicles.back();
+  ASSERT_TRUE(other.flies_as);
+  EXPECT_NE(other.spec.id, *other.flies_as);
+  mission.faults = {{{.not_before = at_seconds(2)}, {}, LateStart{other.spec.id}},
+                    {{.not_before = at_seconds(90)}, {}, Healing{}}};
+  const auto flown = fly(mission);
+  EXPECT_THAT(flown.run.broken, IsEmpty());
+  EXPECT_TRUE(flown.run.sites_done) << "by the others";
+  std::set<VehicleId> know;
+  bool is_told = false;
+  for (const auto& e : flown.events) {
+    const auto* trouble = std::get_if<mission::event::VehicleTrouble>(&e.body);
+    const auto* fleet = std::get_if<mission::event::FleetWarning>(&e.body);
+    if (trouble != nullptr && trouble->trouble == mission::event::Trouble::id_in_use) {
+      know.insert(e.vehicle);
+    }
+    is_told = is_told || (fleet != nullptr && fleet->news == mission::event::FleetNews::duplicate &&
+                          fleet->vehicle == *other.flies_as);
+    const bool bids = e.kind() == mission::EventKind::bid_sent && e.time > at_seconds(3);
+    EXPECT_FALSE(bids && know.contains(e.vehicle)) << trace_line(e);
+  }
+  EXPECT_THAT(know, ::testing::UnorderedElementsAre(*other.flies_as, other.spec.id));
+  EXPECT_TRUE(is_told) << "the operator";
+}
+
 TEST(Faults, AJoinerIsNotThereBefore) {
   auto mission = drawn("joining", 1);
   mission.faults = {{{.not_before = at_seconds(30)}, {}, LateStart{VehicleId{5}}}};

@@ -93,7 +93,8 @@ std::size_t bytes_of(const mission::Message& message) {
 /// A node of the simulated network.
 struct Station {
   radio::Node node;
-  bool on = true;  ///< its program runs
+  VehicleId number;  ///< that it speaks under
+  bool on = true;    ///< its program runs
 };
 
 class Team {
@@ -119,9 +120,9 @@ class Team {
     Random gusts{mission.seed ^ kGustStream};
     for (const auto& v : mission.vehicles) {
       vehicles_.emplace_back(mission, v, gusts.fork());
-      nodes_.push_back({{v.spec.id, Vec2{0.0, 0.0}}, false});
+      nodes_.push_back({{v.spec.id, Vec2{0.0, 0.0}}, v.number(), false});
     }
-    nodes_.push_back({{kGroundStation, std::nullopt}, true});
+    nodes_.push_back({{kGroundStation, std::nullopt}, kGroundStation, true});
     channels_.resize(nodes_.size());
     restart_at_.resize(nodes_.size());
     gone_at_.resize(nodes_.size());
@@ -227,7 +228,9 @@ class Team {
     if (std::holds_alternative<ProgramsStall>(fault.what)) return stall_programs(fault, who, now);
     if (const auto* late = std::get_if<LateStart>(&fault.what)) {
       take_off(index_of(late->vehicle), now);
-      tell(now, FaultEvent::Kind::joined, late->vehicle);
+      const auto number = vehicles_[index_of(late->vehicle)].what().flies_as;
+      tell(now, FaultEvent::Kind::joined, late->vehicle,
+           number ? "under the number of " + names_of({*number}) : "");
       return true;
     }
     if (const auto* falls = std::get_if<BatteryFalls>(&fault.what)) {
@@ -263,13 +266,22 @@ class Team {
       return done;
     }
     if (const auto* order = std::get_if<Ordered>(&fault.what)) {
-      (void)ground_.command(order->vehicle, order->kind, now);
+      order_so(*order, now);
       tell(now, FaultEvent::Kind::ordered, order->vehicle, describe(fault));
       return true;
     }
     if (!ground_.give(std::get<RoutesOrdered>(fault.what), now)) return false;
     tell(now, FaultEvent::Kind::ordered, kGroundStation, describe(fault));
     return true;
+  }
+
+  /// Where the ground station refuses to order all, since a number is used twice, the operator
+  /// orders the others one by one.
+  void order_so(const Ordered& order, Instant now) {
+    if (ground_.command(order.vehicle, order.kind, now) || order.vehicle != kGroundStation) return;
+    for (const Aircraft& v : vehicles_) {
+      if (!v.what().flies_as) (void)ground_.command(v.spec().id, order.kind, now);
+    }
   }
 
   void see(const PlaceSeen& what, Instant now) {
@@ -307,8 +319,8 @@ class Team {
       const std::size_t i = index_of(id);
       if (!nodes_[i].on) continue;
       stands_until_[i] = std::max(stands_until_[i], now + lasts);
-      tell(now, FaultEvent::Kind::stands_still, id,
-           fmt::format("for {:.2f} s", to_seconds(lasts)), lasts);
+      tell(now, FaultEvent::Kind::stands_still, id, fmt::format("for {:.2f} s", to_seconds(lasts)),
+           lasts);
     }
     return true;
   }
@@ -394,7 +406,7 @@ class Team {
   void post(std::size_t from, std::size_t to, int hops, const std::shared_ptr<const Content>& what,
             std::size_t bytes, bool only_wakes, Instant now) {
     if (hops == 0 || !nodes_[to].on) return;
-    const VehicleId sender = nodes_[from].node.id;
+    const VehicleId sender = nodes_[from].number;
     for (const Duration delay : radio_.carry(hops, channels_[to], sender, bytes, now)) {
       if (only_wakes && clocks_agree_) {
         air_.post_wake(now + delay, to, sender, what);
@@ -539,16 +551,16 @@ class Team {
     return any;
   }
 
-  void on_event(Aircraft& v, const mission::MissionEvent& event) {
+  void on_event(Aircraft& v, const mission::MissionEvent& told) {
     using mission::EventKind;
+    const mission::MissionEvent event = v.seen(told);
+    v.on_event(event);
     finder_.on_event(event);
     if (event.kind() == EventKind::site_done && is_of_mission(event.task.site))
       sites_done_.insert(event.task.site);
     if (event.kind() == EventKind::site_done || event.kind() == EventKind::authorisation_refused)
       over(event.task.site);
-    if (event.kind() == EventKind::task_started && event.task.kind == TaskKind::deliver)
-      v.began_delivery();
-    if (observer_.event) observer_.event(v.in_true_time(event));
+    if (observer_.event) observer_.event(event);
   }
 
   /// Not one that detectors have seen: nobody waits for the end of those.
@@ -727,6 +739,9 @@ std::string trace_line(const FaultEvent& event) {
 std::string describe(const TeamMission& mission) {
   std::string text;
   for (const Fault& fault : mission.faults) text += "fault: " + describe(fault) + "\n";
+  for (const auto& v : mission.vehicles) {
+    if (v.flies_as) text += names_of({v.spec.id}) + " flies as " + names_of({*v.flies_as}) + "\n";
+  }
   if (!healing_of(mission.faults)) return text;
   text +=
       fmt::format("the mission ends at {:.2f} s at the latest\n", to_seconds(mission.duration_max));
