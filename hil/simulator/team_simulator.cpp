@@ -554,8 +554,13 @@ class Team {
   void on_event(Aircraft& v, const mission::MissionEvent& told) {
     using mission::EventKind;
     const mission::MissionEvent event = v.seen(told);
+    const bool took_part = v.takes_part();
     v.on_event(event);
     finder_.on_event(event);
+    // What it was told of, the operator tells another.
+    if (took_part && !v.takes_part() && radio_.interference().healed) {
+      hand_over_sites(finder_.report_all(vehicles_), event.time, true);
+    }
     if (event.kind() == EventKind::site_done && is_of_mission(event.task.site))
       sites_done_.insert(event.task.site);
     if (event.kind() == EventKind::site_done || event.kind() == EventKind::authorisation_refused)
