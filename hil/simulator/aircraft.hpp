@@ -37,6 +37,9 @@ class Aircraft {
   /// The program ends. The flight controller holds: an orbit where a vehicle is that follows flight
   /// plans; one that follows a track comes to rest where that ends.
   void end_program(Instant now, const std::vector<Hazard>& hazards);
+  /// The program ends, and no flight controller holds: it goes on by what it has for as long as
+  /// anybody looks.
+  void end_with_program() { node_.reset(); }
   /// Is there an orbit here that is clear of the hazards?
   [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
   /// A new node that remembers nothing, in what state the vehicle is.

@@ -28,6 +28,7 @@ constexpr double kSiteRoom_m = 60.0;
 constexpr double kEverywhere_m = 1e6;
 constexpr Duration kHeldBackMax = seconds{2};
 constexpr double kGustMax_mps = 1.5;
+constexpr std::size_t kLostMax = 2;
 constexpr double kLayer_m = 15.0;
 /// From here on vehicles are numbered that fly under a number of the team.
 constexpr std::size_t kDoubles = 60000;
@@ -195,6 +196,7 @@ constexpr Raise kClock = [](FaultParams& p) { p.wrong_clock = true; };
 constexpr Raise kTakenBack = [](FaultParams& p) { raise(p.taken_back, 2); };
 constexpr Raise kStall = [](FaultParams& p) { raise(p.stalls, 4); };
 constexpr Raise kDouble = [](FaultParams& p) { raise(p.doubles, 1); };
+constexpr Raise kAirframe = [](FaultParams& p) { raise(p.airframes, 1); };
 constexpr Raise kCovered = [](FaultParams& p) { raise(p.covered, 1); };
 constexpr Raise kBattery = [](FaultParams& p) { raise(p.batteries, 2); };
 constexpr Raise kWind = [](FaultParams& p) { raise(p.wind_mps, 5.0); };
@@ -223,6 +225,7 @@ constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
                                Profile{"stall", kStall},
                                Profile{"covered", kCovered},
                                Profile{"double", kDouble, nullptr, true},
+                               Profile{"airframe", kAirframe, nullptr, true},
                                Profile{"battery", kBattery, nullptr, true},
                                Profile{"wind", kWind, nullptr, true},
                                Profile{"narrow", kNarrow, nullptr, true}};
@@ -230,15 +233,15 @@ constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
 void mixed(FaultParams& params, std::uint64_t seed) {
   Random random{seed ^ kMixStream};
   const std::size_t crashes = params.crashes;
-  bool wrong_clock = false;
+  std::size_t lost_besides = 0;
   for (const Profile& profile : kProfiles) {
     if (profile.sites == nullptr || profile.alone || !random.chance(0.45)) continue;
     profile.sites(params);
-    wrong_clock = wrong_clock || profile.sites == kClock;
+    if (profile.sites == kClock || profile.sites == kAirframe) ++lost_besides;
   }
   // Two are lost at most: with fewer vehicles a leader whose site is beyond them can keep the last
   // one that another site needs.
-  if (wrong_clock) params.crashes = std::max(crashes, std::min<std::size_t>(params.crashes, 1));
+  params.crashes = std::max(crashes, std::min(params.crashes, kLostMax - lost_besides));
 }
 
 void mix(Draw& draw) {
@@ -554,6 +557,22 @@ void draw_double(Random& random, TeamMission& mission, Duration phase) {
   mission.vehicles.push_back(std::move(other));
 }
 
+/// What came to be drawn later comes after all else: that is drawn as before with the same seed.
+void draw_further(Random& random, TeamMission& mission, const FaultParams& params) {
+  for (std::size_t n = count(random, params.stalls); n > 0; --n) {
+    mission.faults.push_back(draw_stall(random, params.phase));
+  }
+  draw_covered(random, mission, params);
+  for (std::size_t n = count(random, params.doubles); n > 0; --n) {
+    draw_double(random, mission, params.phase);
+  }
+  for (std::size_t n = count(random, params.airframes); n > 0; --n) {
+    Fault lost = draw_crash(random, params.phase, true);
+    std::get<ProgramsEnd>(lost.what).with_airframe = true;
+    mission.faults.push_back(std::move(lost));
+  }
+}
+
 }  // namespace
 
 Fault draw_stall(Random& random, Duration phase) {
@@ -637,13 +656,7 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }
   draw_surroundings(random, mission, params);
-  for (std::size_t n = count(random, params.stalls); n > 0; --n) {
-    faults.push_back(draw_stall(random, params.phase));
-  }
-  draw_covered(random, mission, params);
-  for (std::size_t n = count(random, params.doubles); n > 0; --n) {
-    draw_double(random, mission, params.phase);
-  }
+  draw_further(random, mission, params);
 }
 
 }  // namespace skein::hil

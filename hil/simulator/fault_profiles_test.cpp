@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -121,6 +123,35 @@ TEST(Faults, WhoCrashesIsSilentAndWhoRestartsKnowsNothing) {
     spoke_after = spoke_after || e.time > flown.faults[1].time;
   }
   EXPECT_TRUE(spoke_after);
+}
+
+TEST(Faults, WhoIsLostWithItsAirframeFliesNoMoreAndIsMissed) {
+  auto mission = drawn("airframe", 1);
+  ProgramsEnd lost;
+  lost.with_airframe = true;
+  mission.faults = {{{.not_before = at_seconds(1), .role = Role::member, .after = 6s}, {}, lost},
+                    {{.not_before = at_seconds(90)}, {}, Healing{}}};
+  std::map<VehicleId, Instant> seen;
+  TeamObserver watcher;
+  std::optional<FaultEvent> gone;
+  bool is_told = false;
+  watcher.track = [&](VehicleId id, const VehicleState& state, const mission::FlightPlan&) {
+    seen[id] = state.time;
+  };
+  watcher.fault = [&](const FaultEvent& e) {
+    if (e.kind == FaultEvent::Kind::gone) gone = e;
+  };
+  watcher.event = [&](const mission::MissionEvent& e) {
+    const auto* fleet = std::get_if<mission::event::FleetWarning>(&e.body);
+    is_told = is_told || (fleet != nullptr && gone && fleet->vehicle == gone->vehicle &&
+                          fleet->news == mission::event::FleetNews::silent);
+  };
+  const auto run = fly_judged(mission, limits_of(scenario("faults-8").expect), watcher);
+  ASSERT_TRUE(gone);
+  EXPECT_LE(seen[gone->vehicle], gone->time + 2s);
+  EXPECT_TRUE(is_told) << "the operator";
+  EXPECT_THAT(run.broken, IsEmpty());
+  EXPECT_TRUE(run.sites_done) << "by the others";
 }
 
 TEST(Faults, WhoStandsStillSaysNothingAndHearsItAllAfterwards) {

@@ -294,16 +294,17 @@ class Team {
   }
 
   bool end_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
+    const auto& what = std::get<ProgramsEnd>(fault.what);
     for (const VehicleId id : who) {
       const std::size_t i = index_of(id);
       // The flight controller knows of no hazards: where somebody is chosen, the orbit must happen
       // to keep its distance.
-      if (fault.when.role && !vehicles_[i].can_hold(hazards_)) return false;
+      const bool holds = fault.when.role && !what.with_airframe;
+      if (holds && !vehicles_[i].can_hold(hazards_)) return false;
     }
-    const auto& sinks_after = std::get<ProgramsEnd>(fault.what).sinks_after;
     for (const VehicleId id : who) {
-      end_program(index_of(id), fault.lasts, now);
-      if (sinks_after) vehicles_[index_of(id)].sink(now + *sinks_after);
+      end_program(index_of(id), fault.lasts, now, what.with_airframe);
+      if (what.sinks_after) vehicles_[index_of(id)].sink(now + *what.sinks_after);
     }
     return true;
   }
@@ -325,16 +326,17 @@ class Team {
     return true;
   }
 
-  void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now) {
+  void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now,
+                   bool with_airframe) {
     if (!nodes_[i].on) return;  // down already
     stands_until_[i] = Instant::min();
     if (i == ground_index()) {
       ground_.end();
     } else {
       count_errors(i);
-      vehicles_[i].end_program(now, hazards_);
+      with_airframe ? vehicles_[i].end_with_program() : vehicles_[i].end_program(now, hazards_);
       finder_.on_agent_end(i);
-      tell_plan(vehicles_[i], now);
+      if (!with_airframe) tell_plan(vehicles_[i], now);
     }
     nodes_[i].on = false;
     if (down_for) {
@@ -342,7 +344,8 @@ class Team {
     } else {
       gone_at_[i] = now;
     }
-    tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone, nodes_[i].node.id);
+    tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone, nodes_[i].node.id,
+         with_airframe ? "with its airframe" : "");
   }
 
   void tell_plan(const Aircraft& v, Instant now) {

@@ -50,6 +50,7 @@ struct FaultParams {
   std::size_t restarts = 0;   ///< silent for some seconds, then with an agent without memory
   std::size_t joiners = 0;    ///< take off only during the phase
   Duration clock_offset{};    ///< of each vehicle's clock, to either side
+  std::size_t airframes = 0;  ///< lost with the program
   std::size_t doubles = 0;    ///< vehicles of others that fly under a number of the team
   std::size_t stalls = 0;     ///< times that a program stands still for seconds
   std::size_t ground = 0;     ///< times that the ground station's program ends and starts anew
