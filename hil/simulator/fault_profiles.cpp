@@ -548,6 +548,7 @@ void draw_wrong_clock(Random& random, TeamMission& mission) {
 void draw_double(Random& random, TeamMission& mission, Duration phase) {
   SimulatedVehicle other = mission.vehicles[random.index(mission.vehicles.size())];
   const Instant at = Instant{} + between(random, Duration{}, phase);
+  if (other.spec.is_copter()) return;  // two would climb from one place
   for (const auto& v : mission.vehicles) {
     other.spec.height_m = std::max(other.spec.height_m, v.spec.height_m + kLayer_m);
   }
