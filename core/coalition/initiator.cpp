@@ -84,6 +84,7 @@ void Initiator::start_round(Instant now) {
   announcement_.leader_at_formation = leader_at_formation_;
   collect_open_tasks(now);
   bids_.clear();
+  doubled_.clear();
   award_.reset();
   confirmed_.clear();
   deadline_ = announcement_.bids_until;
@@ -118,7 +119,12 @@ void Initiator::on_bid(const Bid& message, Instant now) {
     }
   }
   if (message.round != announcement_.round || !machine_.in(State::announcing)) return;
-  if (bids_.size() < kMembersMax) bids_.emplace(message.bidder, message);
+  const auto known = bids_.find(message.bidder);
+  if (known == bids_.end()) {
+    if (bids_.size() < kMembersMax) bids_.emplace(message.bidder, message);
+  } else if (known->second.instance != message.instance) {
+    doubled_.insert(message.bidder);
+  }
 }
 
 void Initiator::close_bids(Instant now) {
@@ -132,7 +138,10 @@ void Initiator::close_bids(Instant now) {
   for (auto& entry : ledger_) {
     if (entry.ownership == Ownership::open) wanted.tasks.push_back(entry.task);
   }
-  for (const auto& [bidder, bid] : bids_) wanted.bids.push_back(bid);
+  // Two programs under one number would both take what is awarded to it.
+  for (const auto& [bidder, bid] : bids_) {
+    if (!doubled_.contains(bidder)) wanted.bids.push_back(bid);
+  }
   if (wanted.tasks.empty()) {
     not_formed(Event::allocation_failed, {Reason::owners_silent}, now);
   } else {

@@ -30,11 +30,11 @@ struct Leader {
   explicit Leader(std::size_t deliveries, std::size_t assessments = 0)
       : self{params, kCoalition, site_with(deliveries, assessments), {}, {}, now} {}
 
-  void hears_bid(VehicleId bidder, std::uint32_t round) {
+  void hears_bid(VehicleId bidder, std::uint32_t round, InstanceId program = kStart) {
     Bid bid;
     bid.round = {kCoalition, round};
     bid.bidder = bidder;
-    bid.instance = kStart;
+    bid.instance = program;
     bid.speed_mps = 20.0;
     bid.planning_radius_m = 60.0;
     self.on_bid(bid, now);
@@ -210,6 +210,26 @@ TEST(Initiator, WhatAnOwnerOfAnEarlierRoundGivesBackIsOpen) {
   const auto lost = leader.newest<Initiator::TaskLost>();
   ASSERT_TRUE(lost);
   EXPECT_EQ(lost->assignment.task, Leader::task(1));
+}
+
+/// Both would take what is awarded to their number.
+TEST(Initiator, TwoProgramsThatBidUnderOneNumberAreAwardedNothing) {
+  Leader leader{1};
+  leader.hears_bid(kFirst, 1);
+  leader.hears_bid(kSecond, 1);
+  leader.hears_bid(kFirst, 1, InstanceId{2});
+  auto wanted = leader.bids_close();
+  ASSERT_TRUE(wanted);
+  ASSERT_EQ(wanted->bids.size(), 1U);
+  EXPECT_EQ(wanted->bids.front().bidder, kSecond);
+
+  leader.self.allocation_failed(leader.self.round(), "too few", leader.now);
+  leader.now += leader.params.monitoring_interval;
+  leader.self.on_timeout(leader.now);
+  leader.hears_bid(kFirst, 2, InstanceId{2});
+  wanted = leader.bids_close();
+  ASSERT_TRUE(wanted);
+  EXPECT_EQ(wanted->bids.size(), 1U) << "one of them is gone, or it had started anew";
 }
 
 /// Its delivery failed and was awarded again, for later: who assesses waits for it at its gate. An

@@ -26,7 +26,7 @@ struct Held {
 };
 
 /// A vehicle knows of a hazard when that appears, or, where no program was running on it, from its
-/// next start on. None where that never came.
+/// next start on, and where that stood still, from when it goes on. None where that never came.
 std::optional<Held> held(const RunRecord& record, const Recording& recorded,
                          const KnownHazard& known, const Limits& limits) {
   if (known.known_from <= Instant{}) return Held{known.known_from, true};
@@ -36,6 +36,10 @@ std::optional<Held> held(const RunRecord& record, const Recording& recorded,
     if (end.vehicle != recorded.vehicle || knows < end.at) continue;
     if (!end.restarted_at) return std::nullopt;
     knows = std::max(knows, *end.restarted_at);
+  }
+  for (const LeftAlone& still : record.stood_still) {
+    const bool concerned = still.vehicle == recorded.vehicle && knows >= still.from;
+    if (concerned) knows = std::max(knows, still.until);
   }
   return Held{knows + from_seconds(limits.hazard_reaction_s), false};
 }

@@ -171,5 +171,16 @@ TEST(HazardChecks, WhoHasNoProgramKnowsOfAHazardFromItsNextStartOn) {
   EXPECT_THAT(check_hazards(record, {}).excused, IsEmpty());
 }
 
+TEST(HazardChecks, WhoseProgramStandsStillKnowsOfAHazardWhenItGoesOn) {
+  RunRecord record = record_with_hazard(20.0);
+  record.stood_still = {{kFromSouth, at_seconds(19.0), at_seconds(25.5)}};
+  EXPECT_TRUE(check_hazards(record, {}).held());
+  EXPECT_THAT(check_hazards(record, {}).excused, SizeIs(1));
+  record.stood_still = {{kFromSouth, at_seconds(21.0), at_seconds(25.5)}};
+  EXPECT_FALSE(check_hazards(record, {}).held()) << "it had heard of it before";
+  record.stood_still = {{VehicleId{99}, at_seconds(19.0), at_seconds(25.5)}};
+  EXPECT_FALSE(check_hazards(record, {}).held()) << "another's";
+}
+
 }  // namespace
 }  // namespace skein::checks

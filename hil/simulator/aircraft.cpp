@@ -72,6 +72,7 @@ void Aircraft::take_off(Instant now) {
 mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) const {
   configuration::VehicleConfig config;
   config.vehicle = what_.spec;
+  config.vehicle.id = what_.number();
   config.vehicle.loads = loads_left_;
   config.search = what_.search;
   config.protocol = mission_.protocol;
@@ -95,13 +96,15 @@ void Aircraft::start_program(const std::vector<Hazard>& hazards, Instant now) {
   numbers_before_ = recorded_.number;
   const auto of_node = config(hazards);
   node_.emplace(of_node, local(now));
-  setup_filter_.emplace(of_node.setup, what_.spec.id);
+  setup_filter_.emplace(of_node.setup, what_.number());
+  shares_number_ = false;
   quiet_until_ = Instant::min();
   untold_.reset();
 }
 
 bool Aircraft::watches(const mission::Telemetry& other) const {
   if (!running() || what_.flies_formation) return false;
+  if (other.vehicle == what_.number()) return true;  // not its own: nobody hears himself
   const double apart_m = other.state.z_m - state_.z_m;
   const double above_m =
       std::copysign(std::max(0.0, std::abs(apart_m) - kHeightOnTheWay_m), apart_m);
@@ -169,8 +172,18 @@ void Aircraft::hold_orbit(Instant now, const std::vector<Hazard>& hazards) {
   recorded_.timed.start_time = now;
 }
 
-mission::MissionEvent Aircraft::in_true_time(mission::MissionEvent event) const {
+mission::MissionEvent Aircraft::seen(mission::MissionEvent event) const {
+  event.vehicle = what_.spec.id;
   return shifted(std::move(event), -clock_);
+}
+
+void Aircraft::on_event(const mission::MissionEvent& event) {
+  const auto* trouble = std::get_if<mission::event::VehicleTrouble>(&event.body);
+  const bool shares = trouble != nullptr && trouble->trouble == mission::event::Trouble::id_in_use;
+  shares_number_ = shares_number_ || shares;
+  if (event.kind() == mission::EventKind::task_started && event.task.kind == TaskKind::deliver) {
+    loads_left_ = loads_left_ > 0 ? loads_left_ - 1 : 0;
+  }
 }
 
 VehicleState Aircraft::local_state() const {

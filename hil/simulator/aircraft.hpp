@@ -37,6 +37,9 @@ class Aircraft {
   /// The program ends. The flight controller holds: an orbit where a vehicle is that follows flight
   /// plans; one that follows a track comes to rest where that ends.
   void end_program(Instant now, const std::vector<Hazard>& hazards);
+  /// The program ends, and no flight controller holds: it goes on by what it has for as long as
+  /// anybody looks.
+  void end_with_program() { node_.reset(); }
   /// Is there an orbit here that is clear of the hazards?
   [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
   /// A new node that remembers nothing, in what state the vehicle is.
@@ -54,7 +57,7 @@ class Aircraft {
 
   /// Is that message anything to it? Precondition: running().
   [[nodiscard]] bool heeds(const mission::Message& message, Instant now) {
-    return mission::concerns(message, what_.spec.id) && setup_filter_->heeds(message, local(now));
+    return mission::concerns(message, what_.number()) && setup_filter_->heeds(message, local(now));
   }
 
   /// Does its node go by what that other vehicle tells of where it is, now? Otherwise telemetry
@@ -75,7 +78,7 @@ class Aircraft {
   [[nodiscard]] bool in_coalitions() const { return running() && !what_.flies_formation; }
   /// And it works with the others.
   [[nodiscard]] bool takes_part() const {
-    return in_coalitions() && node_->bar() == mission::Bar::none;
+    return in_coalitions() && node_->bar() == mission::Bar::none && !shares_number_;
   }
   /// Precondition: running().
   [[nodiscard]] mission::Activity activity() const { return node_->agent().telemetry().activity; }
@@ -85,8 +88,10 @@ class Aircraft {
   [[nodiscard]] bool in_place() const;
   [[nodiscard]] std::uint32_t life() const { return life_; }  ///< counts its nodes
   [[nodiscard]] Instant local(Instant now) const { return now + clock_; }
-  /// An event of the node with its times in true mission time.
-  [[nodiscard]] mission::MissionEvent in_true_time(mission::MissionEvent event) const;
+  /// An event of the node as it is seen from outside: with its times in true mission time.
+  [[nodiscard]] mission::MissionEvent seen(mission::MissionEvent event) const;
+  /// The node has told that.
+  void on_event(const mission::MissionEvent& event);
   [[nodiscard]] VehicleState local_state() const;
 
   /// Follows what the node gives from now on.
@@ -108,7 +113,6 @@ class Aircraft {
   /// How far it is from where it should be.
   [[nodiscard]] double off_m(Instant now) const;
   [[nodiscard]] std::uint8_t loads_left() const { return loads_left_; }
-  void began_delivery() { loads_left_ = loads_left_ > 0 ? loads_left_ - 1 : 0; }
 
  private:
   [[nodiscard]] mission::VehicleNodeConfig config(const std::vector<Hazard>& hazards) const;
@@ -130,6 +134,7 @@ class Aircraft {
   Instant quiet_until_ = Instant::min();  ///< by this vehicle's clock
   std::optional<mission::VehicleNode> node_;
   std::optional<mission::SetupFilter> setup_filter_;  ///< of the node
+  bool shares_number_ = false;  ///< with another vehicle, as the node has told
   std::uint32_t life_ = 0;
   std::unique_ptr<hal::FlightController> body_;
   VehicleState state_;

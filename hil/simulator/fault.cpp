@@ -37,6 +37,7 @@ std::string groups_of(const radio::Cut& cut) {
 struct Sentence {
   std::string operator()(const ProgramsEnd& what) const {
     return (what.who.empty() ? "its program ends" : names_of(what.who) + " lost") +
+           (what.with_airframe ? " with its airframe" : "") +
            (what.sinks_after ? fmt::format(", sinks after {:.1f} s", to_seconds(*what.sinks_after))
                              : "");
   }

@@ -5,6 +5,7 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "skein/base/angles.hpp"
@@ -27,6 +28,10 @@ constexpr double kSiteRoom_m = 60.0;
 constexpr double kEverywhere_m = 1e6;
 constexpr Duration kHeldBackMax = seconds{2};
 constexpr double kGustMax_mps = 1.5;
+constexpr std::size_t kLostMax = 2;
+constexpr double kLayer_m = 15.0;
+/// From here on vehicles are numbered that fly under a number of the team.
+constexpr std::size_t kDoubles = 60000;
 /// Of all together: as much as a coalition of eight needs for its bids to arrive in time.
 constexpr double kNarrow_bytes_per_s = 12e3;
 /// What the operator orders whose battery has fallen, and when; once more where it was not heard.
@@ -35,115 +40,6 @@ constexpr std::array<std::pair<Duration, mission::CommandKind>, 4> kBringDown{
      {seconds{80}, mission::CommandKind::land},
      {seconds{120}, mission::CommandKind::return_home},
      {seconds{160}, mission::CommandKind::land}}};
-
-FaultParams phase_only() {
-  FaultParams p;
-  p.phase = seconds{90};
-  p.bound = seconds{300};
-  return p;
-}
-
-FaultParams lossy() {
-  FaultParams p = phase_only();
-  p.loss = 0.6;
-  p.delay = milliseconds{300};
-  p.jitter = milliseconds{200};
-  p.duplicates = 0.3;
-  p.held_back = 0.1;
-  return p;
-}
-FaultParams partition() {
-  FaultParams p = phase_only();
-  p.partitions = 3;
-  return p;
-}
-FaultParams crash() {
-  FaultParams p = phase_only();
-  p.crashes = 2;
-  p.restarts = 2;
-  return p;
-}
-FaultParams clocks() {
-  FaultParams p = phase_only();
-  p.clock_offset = milliseconds{245};  // two of them within the guard of 500 ms
-  return p;
-}
-FaultParams hazards() {
-  FaultParams p = phase_only();
-  p.hazards = 3;
-  return p;
-}
-FaultParams slow_operator() {
-  FaultParams p = phase_only();
-  p.slow_operator = true;
-  return p;
-}
-FaultParams joining() {
-  FaultParams p = phase_only();
-  p.joiners = 3;
-  p.sites_together = true;
-  return p;
-}
-
-FaultParams ground_anew() {
-  FaultParams p = phase_only();
-  p.ground = 2;
-  return p;
-}
-FaultParams sites_told() {
-  FaultParams p = phase_only();
-  p.seen = 3;
-  p.withdrawn = 1;
-  return p;
-}
-FaultParams orders() {
-  FaultParams p = phase_only();
-  p.orders = 6;
-  p.restarts = 2;
-  return p;
-}
-FaultParams wrong_clock() {
-  FaultParams p = phase_only();
-  p.wrong_clock = true;
-  return p;
-}
-FaultParams grants_taken_back() {
-  FaultParams p = phase_only();
-  p.taken_back = 2;
-  return p;
-}
-FaultParams batteries() {
-  FaultParams p = phase_only();
-  p.batteries = 2;
-  return p;
-}
-FaultParams wind() {
-  FaultParams p = phase_only();
-  p.wind_mps = 5.0;
-  return p;
-}
-FaultParams narrow() {
-  FaultParams p = phase_only();
-  p.narrow = true;
-  return p;
-}
-FaultParams slow_planner() {
-  FaultParams p = phase_only();
-  p.planning = seconds{3};
-  return p;
-}
-
-FaultParams stalled() {
-  FaultParams p = phase_only();
-  p.stalls = 4;
-  return p;
-}
-
-FaultParams covered_sites() {
-  FaultParams p = phase_only();
-  p.covered = 1;
-  return p;
-}
 
 // --- in the changes of a formation ---
 
@@ -247,9 +143,17 @@ void small_clocks(Draw& draw) {
 
 // --- the one vocabulary ---
 
+/// Sets the most of what it draws, where more is not set already.
+using Raise = void (*)(FaultParams& params);
+
+template <typename Amount>
+void raise(Amount& amount, const std::type_identity_t<Amount>& most) {
+  amount = std::max(amount, most);
+}
+
 struct Profile {
   std::string_view name;
-  FaultParams (*sites)() = nullptr;  ///< null: not of missions with sites
+  Raise sites = nullptr;  ///< null: not of missions with sites
   void (*formation)(Draw&) = nullptr;
   bool alone = false;  ///< `mixed` does not draw it
 
@@ -258,42 +162,86 @@ struct Profile {
   }
 };
 
-/// `mixed` draws from those above it, in this order.
-constexpr std::array<Profile, 24> kProfiles{{{"none", nullptr, no_fault},
-                                             {"lossy", lossy},
-                                             {"vehicle", nullptr, lost_vehicle},
-                                             {"leader", nullptr, lost_leader},
-                                             {"ground", ground_anew, lost_ground},
-                                             {"loss", nullptr, heavy_loss},
-                                             {"silence", nullptr, short_silence},
-                                             {"partition", partition, apart},
-                                             {"crash", crash},
-                                             {"restart", nullptr, restart},
-                                             {"clocks", clocks, small_clocks},
-                                             {"hazards", hazards},
-                                             {"operator", slow_operator},
-                                             {"joining", joining},
-                                             {"planner", slow_planner},
-                                             {"sites", sites_told},
-                                             {"orders", orders},
-                                             {"clock", wrong_clock},
-                                             {"taken-back", grants_taken_back},
-                                             {"stall", stalled},
-                                             {"covered", covered_sites},
-                                             {"battery", batteries, nullptr, true},
-                                             {"wind", wind, nullptr, true},
-                                             {"narrow", narrow, nullptr, true}}};
+constexpr Raise kLossy = [](FaultParams& p) {
+  raise(p.loss, 0.6);
+  raise(p.delay, milliseconds{300});
+  raise(p.jitter, milliseconds{200});
+  raise(p.duplicates, 0.3);
+  raise(p.held_back, 0.1);
+};
+constexpr Raise kPartition = [](FaultParams& p) { raise(p.partitions, 3); };
+constexpr Raise kCrash = [](FaultParams& p) {
+  raise(p.crashes, 2);
+  raise(p.restarts, 2);
+};
+constexpr Raise kGround = [](FaultParams& p) { raise(p.ground, 2); };
+/// Two of them are within the guard of 500 ms.
+constexpr Raise kClocks = [](FaultParams& p) { raise(p.clock_offset, milliseconds{245}); };
+constexpr Raise kHazards = [](FaultParams& p) { raise(p.hazards, 3); };
+constexpr Raise kOperator = [](FaultParams& p) { p.slow_operator = true; };
+constexpr Raise kJoining = [](FaultParams& p) {
+  raise(p.joiners, 3);
+  p.sites_together = true;
+};
+constexpr Raise kPlanner = [](FaultParams& p) { raise(p.planning, seconds{3}); };
+constexpr Raise kSites = [](FaultParams& p) {
+  raise(p.seen, 3);
+  raise(p.withdrawn, 1);
+};
+constexpr Raise kOrders = [](FaultParams& p) {
+  raise(p.orders, 6);
+  raise(p.restarts, 2);
+};
+constexpr Raise kClock = [](FaultParams& p) { p.wrong_clock = true; };
+constexpr Raise kTakenBack = [](FaultParams& p) { raise(p.taken_back, 2); };
+constexpr Raise kStall = [](FaultParams& p) { raise(p.stalls, 4); };
+constexpr Raise kDouble = [](FaultParams& p) { raise(p.doubles, 1); };
+constexpr Raise kAirframe = [](FaultParams& p) { raise(p.airframes, 1); };
+constexpr Raise kCovered = [](FaultParams& p) { raise(p.covered, 1); };
+constexpr Raise kBattery = [](FaultParams& p) { raise(p.batteries, 2); };
+constexpr Raise kWind = [](FaultParams& p) { raise(p.wind_mps, 5.0); };
+constexpr Raise kNarrow = [](FaultParams& p) { p.narrow = true; };
 
-FaultParams mixed(std::uint64_t seed) {
+/// `mixed` draws from those above it, in this order.
+constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
+                               Profile{"lossy", kLossy},
+                               Profile{"vehicle", nullptr, lost_vehicle},
+                               Profile{"leader", nullptr, lost_leader},
+                               Profile{"ground", kGround, lost_ground},
+                               Profile{"loss", nullptr, heavy_loss},
+                               Profile{"silence", nullptr, short_silence},
+                               Profile{"partition", kPartition, apart},
+                               Profile{"crash", kCrash},
+                               Profile{"restart", nullptr, restart},
+                               Profile{"clocks", kClocks, small_clocks},
+                               Profile{"hazards", kHazards},
+                               Profile{"operator", kOperator},
+                               Profile{"joining", kJoining},
+                               Profile{"planner", kPlanner},
+                               Profile{"sites", kSites},
+                               Profile{"orders", kOrders},
+                               Profile{"clock", kClock},
+                               Profile{"taken-back", kTakenBack},
+                               Profile{"stall", kStall},
+                               Profile{"covered", kCovered},
+                               Profile{"double", kDouble, nullptr, true},
+                               Profile{"airframe", kAirframe, nullptr, true},
+                               Profile{"battery", kBattery, nullptr, true},
+                               Profile{"wind", kWind, nullptr, true},
+                               Profile{"narrow", kNarrow, nullptr, true}};
+
+void mixed(FaultParams& params, std::uint64_t seed) {
   Random random{seed ^ kMixStream};
-  FaultParams all = phase_only();
+  const std::size_t crashes = params.crashes;
+  std::size_t lost_besides = 0;
   for (const Profile& profile : kProfiles) {
-    if (profile.sites != nullptr && !profile.alone && random.chance(0.45)) all.add(profile.sites());
+    if (profile.sites == nullptr || profile.alone || !random.chance(0.45)) continue;
+    profile.sites(params);
+    if (profile.sites == kClock || profile.sites == kAirframe) ++lost_besides;
   }
   // Two are lost at most: with fewer vehicles a leader whose site is beyond them can keep the last
   // one that another site needs.
-  if (all.wrong_clock) all.crashes = std::min<std::size_t>(all.crashes, 1);
-  return all;
+  params.crashes = std::max(crashes, std::min(params.crashes, kLostMax - lost_besides));
 }
 
 void mix(Draw& draw) {
@@ -477,37 +425,6 @@ void draw_decisions(Random& random, TeamMission& mission, const FaultParams& par
 
 }  // namespace
 
-FaultParams& FaultParams::add(const FaultParams& other) {
-  phase = std::max(phase, other.phase);
-  bound = std::max(bound, other.bound);
-  loss = std::max(loss, other.loss);
-  delay = std::max(delay, other.delay);
-  jitter = std::max(jitter, other.jitter);
-  duplicates = std::max(duplicates, other.duplicates);
-  held_back = std::max(held_back, other.held_back);
-  partitions = std::max(partitions, other.partitions);
-  crashes = std::max(crashes, other.crashes);
-  restarts = std::max(restarts, other.restarts);
-  joiners = std::max(joiners, other.joiners);
-  stalls = std::max(stalls, other.stalls);
-  clock_offset = std::max(clock_offset, other.clock_offset);
-  orders = std::max(orders, other.orders);
-  wrong_clock = wrong_clock || other.wrong_clock;
-  ground = std::max(ground, other.ground);
-  planning = std::max(planning, other.planning);
-  hazards = std::max(hazards, other.hazards);
-  covered = std::max(covered, other.covered);
-  seen = std::max(seen, other.seen);
-  withdrawn = std::max(withdrawn, other.withdrawn);
-  taken_back = std::max(taken_back, other.taken_back);
-  slow_operator = slow_operator || other.slow_operator;
-  batteries = std::max(batteries, other.batteries);
-  narrow = narrow || other.narrow;
-  wind_mps = std::max(wind_mps, other.wind_mps);
-  sites_together = sites_together || other.sites_together;
-  return *this;
-}
-
 Result<std::vector<std::string>> fault_names(
     const std::string& list, const std::vector<std::string_view>& known,
     const std::function<std::string(const std::string& name)>& why_not) {
@@ -541,7 +458,9 @@ Result<FaultParams> fault_params(const std::string& profiles, std::uint64_t seed
   FaultParams all;
   for (const std::string& name : *names) {
     if (name == "none") continue;
-    all.add(name == "mixed" ? mixed(seed) : profile_of(name).sites());
+    all.phase = seconds{90};
+    all.bound = seconds{300};
+    name == "mixed" ? mixed(all, seed) : profile_of(name).sites(all);
   }
   return all;
 }
@@ -622,6 +541,37 @@ void draw_wrong_clock(Random& random, TeamMission& mission) {
     return clock != nullptr && clock->node == whose;
   });
   mission.faults.push_back({{}, {}, ClockOff{whose, random.chance(0.5) ? off : -off}});
+}
+
+/// Another vehicle of that kind takes off where one of the team did, in a layer of its own: the
+/// numbers are a mistake, the heights are not.
+void draw_double(Random& random, TeamMission& mission, Duration phase) {
+  SimulatedVehicle other = mission.vehicles[random.index(mission.vehicles.size())];
+  const Instant at = Instant{} + between(random, Duration{}, phase);
+  if (other.spec.is_copter()) return;  // two would climb from one place
+  for (const auto& v : mission.vehicles) {
+    other.spec.height_m = std::max(other.spec.height_m, v.spec.height_m + kLayer_m);
+  }
+  other.flies_as = other.number();
+  other.spec.id = VehicleId{static_cast<std::uint16_t>(kDoubles + mission.vehicles.size())};
+  mission.faults.push_back({{.not_before = at}, {}, LateStart{other.spec.id}});
+  mission.vehicles.push_back(std::move(other));
+}
+
+/// What came to be drawn later comes after all else: that is drawn as before with the same seed.
+void draw_further(Random& random, TeamMission& mission, const FaultParams& params) {
+  for (std::size_t n = count(random, params.stalls); n > 0; --n) {
+    mission.faults.push_back(draw_stall(random, params.phase));
+  }
+  draw_covered(random, mission, params);
+  for (std::size_t n = count(random, params.doubles); n > 0; --n) {
+    draw_double(random, mission, params.phase);
+  }
+  for (std::size_t n = count(random, params.airframes); n > 0; --n) {
+    Fault lost = draw_crash(random, params.phase, true);
+    std::get<ProgramsEnd>(lost.what).with_airframe = true;
+    mission.faults.push_back(std::move(lost));
+  }
 }
 
 }  // namespace
@@ -707,10 +657,7 @@ void add_faults(TeamMission& mission, const FaultParams& params) {
     mission.allocation_takes = between(random, mission.allocation_takes, params.planning);
   }
   draw_surroundings(random, mission, params);
-  for (std::size_t n = count(random, params.stalls); n > 0; --n) {
-    faults.push_back(draw_stall(random, params.phase));
-  }
-  draw_covered(random, mission, params);
+  draw_further(random, mission, params);
 }
 
 }  // namespace skein::hil

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -123,6 +125,35 @@ TEST(Faults, WhoCrashesIsSilentAndWhoRestartsKnowsNothing) {
   EXPECT_TRUE(spoke_after);
 }
 
+TEST(Faults, WhoIsLostWithItsAirframeFliesNoMoreAndIsMissed) {
+  auto mission = drawn("airframe", 1);
+  ProgramsEnd lost;
+  lost.with_airframe = true;
+  mission.faults = {{{.not_before = at_seconds(1), .role = Role::member, .after = 6s}, {}, lost},
+                    {{.not_before = at_seconds(90)}, {}, Healing{}}};
+  std::map<VehicleId, Instant> seen;
+  TeamObserver watcher;
+  std::optional<FaultEvent> gone;
+  bool is_told = false;
+  watcher.track = [&](VehicleId id, const VehicleState& state, const mission::FlightPlan&) {
+    seen[id] = state.time;
+  };
+  watcher.fault = [&](const FaultEvent& e) {
+    if (e.kind == FaultEvent::Kind::gone) gone = e;
+  };
+  watcher.event = [&](const mission::MissionEvent& e) {
+    const auto* fleet = std::get_if<mission::event::FleetWarning>(&e.body);
+    is_told = is_told || (fleet != nullptr && gone && fleet->vehicle == gone->vehicle &&
+                          fleet->news == mission::event::FleetNews::silent);
+  };
+  const auto run = fly_judged(mission, limits_of(scenario("faults-8").expect), watcher);
+  ASSERT_TRUE(gone);
+  EXPECT_LE(seen[gone->vehicle], gone->time + 2s);
+  EXPECT_TRUE(is_told) << "the operator";
+  EXPECT_THAT(run.broken, IsEmpty());
+  EXPECT_TRUE(run.sites_done) << "by the others";
+}
+
 TEST(Faults, WhoStandsStillSaysNothingAndHearsItAllAfterwards) {
   auto mission = drawn("stall", 1);
   mission.faults = {
@@ -151,6 +182,34 @@ TEST(Faults, WhoStartsAnewAfterTheHealingIsToldOfWhatNobodyCouldBeToldOf) {
   mission->faults = {{{.not_before = at_seconds(20)}, 20s, ProgramsEnd{{only_scout.spec.id}}},
                      {{.not_before = at_seconds(30)}, {}, Healing{}}};
   EXPECT_TRUE(fly(*mission).run.sites_done);
+}
+
+TEST(Faults, TwoUnderOneNumberAreToldAndTakeUpNothing) {
+  auto mission = drawn("double", 3);
+  ASSERT_EQ(mission.vehicles.size(), 9U);
+  const SimulatedVehicle& other = mission.vehicles.back();
+  ASSERT_TRUE(other.flies_as);
+  EXPECT_NE(other.spec.id, *other.flies_as);
+  mission.faults = {{{.not_before = at_seconds(2)}, {}, LateStart{other.spec.id}},
+                    {{.not_before = at_seconds(90)}, {}, Healing{}}};
+  const auto flown = fly(mission);
+  EXPECT_THAT(flown.run.broken, IsEmpty());
+  EXPECT_TRUE(flown.run.sites_done) << "by the others";
+  std::set<VehicleId> know;
+  bool is_told = false;
+  for (const auto& e : flown.events) {
+    const auto* trouble = std::get_if<mission::event::VehicleTrouble>(&e.body);
+    const auto* fleet = std::get_if<mission::event::FleetWarning>(&e.body);
+    if (trouble != nullptr && trouble->trouble == mission::event::Trouble::id_in_use) {
+      know.insert(e.vehicle);
+    }
+    is_told = is_told || (fleet != nullptr && fleet->news == mission::event::FleetNews::duplicate &&
+                          fleet->vehicle == *other.flies_as);
+    const bool bids = e.kind() == mission::EventKind::bid_sent && e.time > at_seconds(3);
+    EXPECT_FALSE(bids && know.contains(e.vehicle)) << trace_line(e);
+  }
+  EXPECT_THAT(know, ::testing::UnorderedElementsAre(*other.flies_as, other.spec.id));
+  EXPECT_TRUE(is_told) << "the operator";
 }
 
 TEST(Faults, AJoinerIsNotThereBefore) {

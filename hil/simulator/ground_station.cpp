@@ -30,7 +30,9 @@ mission::GroundDetectionsConfig taken_at_once() {
 mission::GroundNodeConfig node_config(const TeamMission& mission) {
   mission::GroundNodeConfig node;
   node.setup.clock_guard = mission.protocol.clock_guard;
-  for (const auto& v : mission.vehicles) node.agent.expected.push_back(v.spec.id);
+  for (const auto& v : mission.vehicles) {
+    if (!v.flies_as) node.agent.expected.push_back(v.spec.id);
+  }
   node.agent.decisions = mission.decisions;
   node.detections = taken_at_once();
   if (mission.formation && mission.formation->planes) {

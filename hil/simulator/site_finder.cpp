@@ -38,7 +38,7 @@ SiteFinder::SiteFinder(const TeamMission& mission)
 
 SiteFinder::Found SiteFinder::found(std::size_t vehicle, const Site& site) {
   known_.on_told(site.id, specs_[vehicle].id);
-  return {vehicle, {specs_[vehicle].id, site}};
+  return {vehicle, {mission_.vehicles[vehicle].number(), site}};
 }
 
 std::vector<SiteFinder::Found> SiteFinder::look(const std::vector<Aircraft>& vehicles) {

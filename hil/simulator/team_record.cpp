@@ -53,6 +53,9 @@ TeamObserver TeamRecorder::observer() {
       if (watcher_.fault) watcher_.fault(event);
       return;
     }
+    if (event.kind == FaultEvent::Kind::stands_still) {
+      record_.stood_still.push_back({event.vehicle, event.time, event.time + event.lasts});
+    }
     if (event.kind == FaultEvent::Kind::gone || event.kind == FaultEvent::Kind::ended)
       record_.agent_ends.push_back({event.vehicle, event.time, {}});
     if (event.kind == FaultEvent::Kind::restarted) {

@@ -93,7 +93,8 @@ std::size_t bytes_of(const mission::Message& message) {
 /// A node of the simulated network.
 struct Station {
   radio::Node node;
-  bool on = true;  ///< its program runs
+  VehicleId number;  ///< that it speaks under
+  bool on = true;    ///< its program runs
 };
 
 class Team {
@@ -119,9 +120,9 @@ class Team {
     Random gusts{mission.seed ^ kGustStream};
     for (const auto& v : mission.vehicles) {
       vehicles_.emplace_back(mission, v, gusts.fork());
-      nodes_.push_back({{v.spec.id, Vec2{0.0, 0.0}}, false});
+      nodes_.push_back({{v.spec.id, Vec2{0.0, 0.0}}, v.number(), false});
     }
-    nodes_.push_back({{kGroundStation, std::nullopt}, true});
+    nodes_.push_back({{kGroundStation, std::nullopt}, kGroundStation, true});
     channels_.resize(nodes_.size());
     restart_at_.resize(nodes_.size());
     gone_at_.resize(nodes_.size());
@@ -181,8 +182,9 @@ class Team {
 
   // --- faults ---
 
-  void tell(Instant now, FaultEvent::Kind kind, VehicleId vehicle, std::string text = {}) const {
-    if (observer_.fault) observer_.fault({now, kind, vehicle, std::move(text)});
+  void tell(Instant now, FaultEvent::Kind kind, VehicleId vehicle, std::string text = {},
+            Duration lasts = {}) const {
+    if (observer_.fault) observer_.fault({now, kind, vehicle, std::move(text), lasts});
   }
 
   void play_faults(Instant now) {
@@ -226,7 +228,9 @@ class Team {
     if (std::holds_alternative<ProgramsStall>(fault.what)) return stall_programs(fault, who, now);
     if (const auto* late = std::get_if<LateStart>(&fault.what)) {
       take_off(index_of(late->vehicle), now);
-      tell(now, FaultEvent::Kind::joined, late->vehicle);
+      const auto number = vehicles_[index_of(late->vehicle)].what().flies_as;
+      tell(now, FaultEvent::Kind::joined, late->vehicle,
+           number ? "under the number of " + names_of({*number}) : "");
       return true;
     }
     if (const auto* falls = std::get_if<BatteryFalls>(&fault.what)) {
@@ -262,13 +266,22 @@ class Team {
       return done;
     }
     if (const auto* order = std::get_if<Ordered>(&fault.what)) {
-      (void)ground_.command(order->vehicle, order->kind, now);
+      order_so(*order, now);
       tell(now, FaultEvent::Kind::ordered, order->vehicle, describe(fault));
       return true;
     }
     if (!ground_.give(std::get<RoutesOrdered>(fault.what), now)) return false;
     tell(now, FaultEvent::Kind::ordered, kGroundStation, describe(fault));
     return true;
+  }
+
+  /// Where the ground station refuses to order all, since a number is used twice, the operator
+  /// orders the others one by one.
+  void order_so(const Ordered& order, Instant now) {
+    if (ground_.command(order.vehicle, order.kind, now) || order.vehicle != kGroundStation) return;
+    for (const Aircraft& v : vehicles_) {
+      if (!v.what().flies_as) (void)ground_.command(v.spec().id, order.kind, now);
+    }
   }
 
   void see(const PlaceSeen& what, Instant now) {
@@ -281,16 +294,17 @@ class Team {
   }
 
   bool end_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
+    const auto& what = std::get<ProgramsEnd>(fault.what);
     for (const VehicleId id : who) {
       const std::size_t i = index_of(id);
       // The flight controller knows of no hazards: where somebody is chosen, the orbit must happen
       // to keep its distance.
-      if (fault.when.role && !vehicles_[i].can_hold(hazards_)) return false;
+      const bool holds = fault.when.role && !what.with_airframe;
+      if (holds && !vehicles_[i].can_hold(hazards_)) return false;
     }
-    const auto& sinks_after = std::get<ProgramsEnd>(fault.what).sinks_after;
     for (const VehicleId id : who) {
-      end_program(index_of(id), fault.lasts, now);
-      if (sinks_after) vehicles_[index_of(id)].sink(now + *sinks_after);
+      end_program(index_of(id), fault.lasts, now, what.with_airframe);
+      if (what.sinks_after) vehicles_[index_of(id)].sink(now + *what.sinks_after);
     }
     return true;
   }
@@ -301,26 +315,28 @@ class Team {
 
   /// What comes to it waits for it; its aircraft flies on by the guidance that it has.
   bool stall_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
+    const Duration lasts = fault.lasts.value_or(Duration{});
     for (const VehicleId id : who) {
       const std::size_t i = index_of(id);
       if (!nodes_[i].on) continue;
-      stands_until_[i] = std::max(stands_until_[i], now + fault.lasts.value_or(Duration{}));
-      tell(now, FaultEvent::Kind::stands_still, id,
-           fmt::format("for {:.2f} s", to_seconds(fault.lasts.value_or(Duration{}))));
+      stands_until_[i] = std::max(stands_until_[i], now + lasts);
+      tell(now, FaultEvent::Kind::stands_still, id, fmt::format("for {:.2f} s", to_seconds(lasts)),
+           lasts);
     }
     return true;
   }
 
-  void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now) {
+  void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now,
+                   bool with_airframe) {
     if (!nodes_[i].on) return;  // down already
     stands_until_[i] = Instant::min();
     if (i == ground_index()) {
       ground_.end();
     } else {
       count_errors(i);
-      vehicles_[i].end_program(now, hazards_);
+      with_airframe ? vehicles_[i].end_with_program() : vehicles_[i].end_program(now, hazards_);
       finder_.on_agent_end(i);
-      tell_plan(vehicles_[i], now);
+      if (!with_airframe) tell_plan(vehicles_[i], now);
     }
     nodes_[i].on = false;
     if (down_for) {
@@ -328,7 +344,8 @@ class Team {
     } else {
       gone_at_[i] = now;
     }
-    tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone, nodes_[i].node.id);
+    tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone, nodes_[i].node.id,
+         with_airframe ? "with its airframe" : "");
   }
 
   void tell_plan(const Aircraft& v, Instant now) {
@@ -392,7 +409,7 @@ class Team {
   void post(std::size_t from, std::size_t to, int hops, const std::shared_ptr<const Content>& what,
             std::size_t bytes, bool only_wakes, Instant now) {
     if (hops == 0 || !nodes_[to].on) return;
-    const VehicleId sender = nodes_[from].node.id;
+    const VehicleId sender = nodes_[from].number;
     for (const Duration delay : radio_.carry(hops, channels_[to], sender, bytes, now)) {
       if (only_wakes && clocks_agree_) {
         air_.post_wake(now + delay, to, sender, what);
@@ -537,16 +554,21 @@ class Team {
     return any;
   }
 
-  void on_event(Aircraft& v, const mission::MissionEvent& event) {
+  void on_event(Aircraft& v, const mission::MissionEvent& told) {
     using mission::EventKind;
+    const mission::MissionEvent event = v.seen(told);
+    const bool took_part = v.takes_part();
+    v.on_event(event);
     finder_.on_event(event);
+    // What it was told of, the operator tells another.
+    if (took_part && !v.takes_part() && radio_.interference().healed) {
+      hand_over_sites(finder_.report_all(vehicles_), event.time, true);
+    }
     if (event.kind() == EventKind::site_done && is_of_mission(event.task.site))
       sites_done_.insert(event.task.site);
     if (event.kind() == EventKind::site_done || event.kind() == EventKind::authorisation_refused)
       over(event.task.site);
-    if (event.kind() == EventKind::task_started && event.task.kind == TaskKind::deliver)
-      v.began_delivery();
-    if (observer_.event) observer_.event(v.in_true_time(event));
+    if (observer_.event) observer_.event(event);
   }
 
   /// Not one that detectors have seen: nobody waits for the end of those.
@@ -725,6 +747,9 @@ std::string trace_line(const FaultEvent& event) {
 std::string describe(const TeamMission& mission) {
   std::string text;
   for (const Fault& fault : mission.faults) text += "fault: " + describe(fault) + "\n";
+  for (const auto& v : mission.vehicles) {
+    if (v.flies_as) text += names_of({v.spec.id}) + " flies as " + names_of({*v.flies_as}) + "\n";
+  }
   if (!healing_of(mission.faults)) return text;
   text +=
       fmt::format("the mission ends at {:.2f} s at the latest\n", to_seconds(mission.duration_max));

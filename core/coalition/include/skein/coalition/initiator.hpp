@@ -213,6 +213,7 @@ class Initiator {
   Instant planning_since_{};   ///< of the newest round that got so far
   std::vector<Entry> ledger_;  ///< one entry a task, in the order of the site
   std::map<VehicleId, Bid> bids_;
+  std::set<VehicleId> doubled_;  ///< two programs have bid under these numbers
   std::optional<Award> award_;
   /// Taking over: how far the supporters' promises reach, and how many of them must come over to
   /// this coalition, so that the lost leader can never have a majority again.

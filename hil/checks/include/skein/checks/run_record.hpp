@@ -78,6 +78,8 @@ struct RunRecord {
   std::vector<AgentEnd> agent_ends;  ///< in the order of time
   /// Of processes. In virtual time a program ends only where what its autopilot does then is safe.
   std::vector<LeftAlone> left_alone = {};
+  /// Programs in virtual time, in the order of time: their aircraft flew on by what they had said.
+  std::vector<LeftAlone> stood_still = {};
   std::vector<Excuse> excused = {};
   /// As whoever watches the network saw it, where somebody did; in the order of time.
   std::vector<RefusalHeard> refusals = {};

@@ -41,6 +41,7 @@ struct ProgramsEnd {
   std::vector<VehicleId> who;                          ///< empty where When::role finds one
   std::uint64_t pick = 0;                              ///< among those that have the role
   std::optional<Duration> sinks_after = std::nullopt;  ///< a multirotor comes down where it is
+  bool with_airframe = false;                          ///< nothing flies 2 s later, in virtual time
 };
 /// A cell of the vehicle's battery fails: at once no more than that is left of it, as its gauge
 /// tells. A vehicle to which that happens has a battery that, full, lasts for its range down to

@@ -50,6 +50,8 @@ struct FaultParams {
   std::size_t restarts = 0;   ///< silent for some seconds, then with an agent without memory
   std::size_t joiners = 0;    ///< take off only during the phase
   Duration clock_offset{};    ///< of each vehicle's clock, to either side
+  std::size_t airframes = 0;  ///< lost with the program
+  std::size_t doubles = 0;    ///< vehicles of others that fly under a number of the team
   std::size_t stalls = 0;     ///< times that a program stands still for seconds
   std::size_t ground = 0;     ///< times that the ground station's program ends and starts anew
   Duration planning{};        ///< a plan takes up to so long, in every vehicle
@@ -66,9 +68,6 @@ struct FaultParams {
   std::size_t taken_back = 0;   ///< sites whose grant the operator takes back
   bool slow_operator = false;   ///< decisions late, refused, or only after a fixed moment
   bool sites_together = false;  ///< all sites are reported at one moment: several leaders
-
-  /// The larger of each.
-  FaultParams& add(const FaultParams& other);
 };
 
 /// "lossy", "lossy,crash", ...: the profiles together. `mixed` draws several with the seed. Fails

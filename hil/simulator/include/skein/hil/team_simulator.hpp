@@ -45,6 +45,11 @@ struct SimulatedVehicle {
   Body body = Body::heading_dynamics;
   /// By orders of the ground station; otherwise it works in coalitions.
   bool flies_formation = false;
+  /// The number under which it speaks and hears, where that is another vehicle's: then the one of
+  /// its `spec` is what it is told apart by from outside alone.
+  std::optional<VehicleId> flies_as = std::nullopt;
+
+  [[nodiscard]] VehicleId number() const { return flies_as.value_or(spec.id); }
 };
 
 /// A hazard and when it comes into being; everyone is told then.
@@ -102,6 +107,7 @@ struct FaultEvent {
   Kind kind = Kind::healed;
   VehicleId vehicle;  ///< where it applies
   std::string text;
+  Duration lasts{};  ///< that a program stands still
 };
 
 /// A body as whoever watches from outside sees it.
@@ -149,9 +155,10 @@ struct TeamObserver {
 /// A vehicle when the mission ended.
 struct VehicleEnd {
   VehicleId vehicle;
-  bool gone = false;    ///< its agent ended for good
-  bool spent = false;   ///< its battery has fallen: it comes home
-  bool barred = false;  ///< it does not work with the others (mission::Bar)
+  bool gone = false;   ///< its agent ended for good
+  bool spent = false;  ///< its battery has fallen: it comes home
+  bool barred =
+      false;  ///< it does not work with the others (mission::Bar, its number is used twice)
   std::uint8_t loads = 0;
   double range_left_m = 0.0;
   Vec2 position{0.0, 0.0};
