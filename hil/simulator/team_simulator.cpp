@@ -560,8 +560,9 @@ class Team {
     const bool took_part = v.takes_part();
     v.on_event(event);
     finder_.on_event(event);
-    // What it was told of, the operator tells another.
-    if (took_part && !v.takes_part() && radio_.interference().healed) {
+    // What it knows of, the operator tells another.
+    const bool leaves = took_part || event.kind() == EventKind::setup_differs;
+    if (leaves && !v.takes_part() && radio_.interference().healed) {
       hand_over_sites(finder_.report_all(vehicles_), event.time, true);
     }
     if (event.kind() == EventKind::site_done && is_of_mission(event.task.site))
