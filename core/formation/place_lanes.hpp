@@ -2,9 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
 
 #include "skein/base/vectors.hpp"
 
@@ -29,25 +26,12 @@ struct PlaceTable {
 /// one source only, which is compiled for processors that have it; hence no header with code is
 /// included.
 template <int Lanes>
-struct PlaceLanes {
+struct PlaceLanes : VectorOps<Lanes> {
   using Real = typename Vectors<Lanes>::Real;
 
-  static Real splat(double value) { return Real{} + value; }
-  static Real load(const double* from) {
-    Real result{};
-    __builtin_memcpy(&result, from, sizeof result);
-    return result;
-  }
-  static Real root(Real a) {
-#if defined(__AVX2__)
-    if constexpr (Lanes == 4) return Real(_mm256_sqrt_pd(__m256d(a)));
-#endif
-#if defined(__x86_64__)
-    if constexpr (Lanes == 2) return Real(_mm_sqrt_pd(__m128d(a)));
-#endif
-    for (int i = 0; i < Lanes; ++i) a[i] = __builtin_sqrt(a[i]);
-    return a;
-  }
+  using VectorOps<Lanes>::splat;
+  using VectorOps<Lanes>::load;
+  using VectorOps<Lanes>::root;
 
   static void fill(const PlaceTable& t, const PlacePoints& rows, const PlacePoints& columns,
                    bool squared) {

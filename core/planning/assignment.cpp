@@ -42,16 +42,6 @@ std::optional<Assignment> least_sum_of(AssignmentSolver& solver, std::span<const
 
 }  // namespace
 
-std::span<const Width> AssignmentSolver::widths() {
-  static constexpr std::array<Width, 2> kWidths = {Width::baseline, Width::avx2};
-#if defined(__x86_64__)
-  static const std::size_t count = __builtin_cpu_supports("avx2") ? 2 : 1;
-#else
-  static const std::size_t count = 1;
-#endif
-  return {kWidths.data(), count};
-}
-
 AssignmentSolver::AssignmentSolver(Width width) : width_{width} {
   SKEIN_ASSERT(static_cast<std::size_t>(width) < widths().size());
 }

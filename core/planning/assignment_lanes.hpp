@@ -48,19 +48,15 @@ struct AssignmentThreshold {
 /// the same bits with every width. Each width is instantiated in one source only, which is compiled
 /// for processors that have it; hence no header with code is included.
 template <int Lanes>
-struct AssignmentLanes {
+struct AssignmentLanes : VectorOps<Lanes> {
   using Real = typename Vectors<Lanes>::Real;
   using Bits = typename Vectors<Lanes>::Bits;
 
   static constexpr double kInfinity = __builtin_inf();
 
-  static Real splat(double value) { return Real{} + value; }
-  static Real load(const double* from) {
-    Real result{};
-    __builtin_memcpy(&result, from, sizeof result);
-    return result;
-  }
-  static void store(double* to, Real value) { __builtin_memcpy(to, &value, sizeof value); }
+  using VectorOps<Lanes>::splat;
+  using VectorOps<Lanes>::load;
+  using VectorOps<Lanes>::store;
   static Real least(Real a, Real b) {
 #if defined(__AVX2__)
     if constexpr (Lanes == 4) return Real(_mm256_min_pd(__m256d(b), __m256d(a)));

@@ -2,7 +2,6 @@
 #include "skein/routes/curve.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "curve_lanes.hpp"
@@ -226,16 +225,6 @@ void CurveEvaluator::Tables::add_samples(const Vec2& from, const Vec2& to) {
     x = base_x;
     CurveLanes<2>::pad(x.data(), samples, stride);
   }
-}
-
-std::span<const CurveEvaluator::Width> CurveEvaluator::widths() {
-  static constexpr std::array<Width, 2> kWidths = {Width::baseline, Width::avx2};
-#if defined(__x86_64__)
-  static const std::size_t count = __builtin_cpu_supports("avx2") ? 2 : 1;
-#else
-  static const std::size_t count = 1;
-#endif
-  return {kWidths.data(), count};
 }
 
 CurveEvaluator::CurveEvaluator(const CurveProblem& problem, CurveForm form, Width width)

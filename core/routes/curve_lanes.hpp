@@ -2,9 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
 
 #include "skein/base/vectors.hpp"
 
@@ -53,29 +50,16 @@ struct CurveSums {
 /// is instantiated in one source only, which is compiled for processors that have it; hence no
 /// header with code is included.
 template <int Lanes>
-struct CurveLanes {
+struct CurveLanes : VectorOps<Lanes> {
   using Real = typename Vectors<Lanes>::Real;
   using Bits = typename Vectors<Lanes>::Bits;
   static constexpr std::size_t kParts = kCurveBlock / Lanes;
 
-  static Real splat(double value) { return Real{} + value; }
-  static Real load(const double* from) {
-    Real result{};
-    __builtin_memcpy(&result, from, sizeof result);
-    return result;
-  }
-  static void store(double* to, Real value) { __builtin_memcpy(to, &value, sizeof value); }
+  using VectorOps<Lanes>::splat;
+  using VectorOps<Lanes>::load;
+  using VectorOps<Lanes>::store;
+  using VectorOps<Lanes>::root;
   static Real select(Bits mask, Real yes, Real no) { return mask ? yes : no; }
-  static Real root(Real a) {
-#if defined(__AVX2__)
-    if constexpr (Lanes == 4) return Real(_mm256_sqrt_pd(__m256d(a)));
-#endif
-#if defined(__x86_64__)
-    if constexpr (Lanes == 2) return Real(_mm_sqrt_pd(__m128d(a)));
-#endif
-    for (int i = 0; i < Lanes; ++i) a[i] = __builtin_sqrt(a[i]);
-    return a;
-  }
   /// kCurveBlock partial sums.
   struct Sum {
     Real part[kParts] = {};  // NOLINT(modernize-avoid-c-arrays): no header but intrinsics here

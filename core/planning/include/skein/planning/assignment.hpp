@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "skein/base/vector_width.hpp"
+
 namespace skein::planning {
 
 /// column_of[row], each column used at most once; `cost` is the sum of the entries used.
@@ -27,9 +29,9 @@ struct Assignment {
 /// deterministic, the same bits on every processor (AVX2 or plain code, chosen at run time).
 class AssignmentSolver {
  public:
-  enum class Width : std::uint8_t { baseline, avx2 };
+  using Width = VectorWidth;
   /// What this processor can do, narrowest first.
-  [[nodiscard]] static std::span<const Width> widths();
+  [[nodiscard]] static std::span<const Width> widths() { return vector_widths(); }
 
   AssignmentSolver() : AssignmentSolver{widths().back()} {}
   /// Precondition: one of widths().

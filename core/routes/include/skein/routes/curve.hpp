@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "skein/base/geometry.hpp"
+#include "skein/base/vector_width.hpp"
 #include "skein/routes/hazards.hpp"
 #include "skein/routes/optimiser.hpp"
 
@@ -82,9 +83,9 @@ enum class CurveForm : std::uint8_t {
 /// Keeps buffers, so one thread uses one. The same bits on every processor.
 class CurveEvaluator {
  public:
-  enum class Width : std::uint8_t { baseline, avx2 };
+  using Width = VectorWidth;
   /// Of this processor, narrowest first.
-  [[nodiscard]] static std::span<const Width> widths();
+  [[nodiscard]] static std::span<const Width> widths() { return vector_widths(); }
 
   /// Preconditions: start and site apart; waypoints, samples and hazards as above.
   CurveEvaluator(const CurveProblem& problem, CurveForm form, Width width = widths().back());
