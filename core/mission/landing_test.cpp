@@ -72,29 +72,29 @@ void fly_above(Lander& vehicle, double seconds, double below_m) {
   }
 }
 
+/// In its orbit at home, and told to land.
+struct OrderedDown : Lander {
+  OrderedDown() {
+    order(CommandKind::return_home);
+    fly(120.0);
+    order(CommandKind::land);
+  }
+};
+
 TEST(LandingOrder, WaitsUntilTheAirBelowIsFreeThoughNotForEver) {
-  Lander vehicle;
-  vehicle.order(CommandKind::return_home);
-  fly_above(vehicle, 120.0, 12.0);
-  vehicle.order(CommandKind::land);
+  OrderedDown vehicle;
   fly_above(vehicle, 30.0, 12.0);
   EXPECT_FALSE(vehicle.plan.lands);
   vehicle.fly(10.0);  // the other is not heard any more
   EXPECT_TRUE(vehicle.plan.lands);
 
-  Lander patient;
-  patient.order(CommandKind::return_home);
-  patient.fly(120.0);
-  patient.order(CommandKind::land);
+  OrderedDown patient;
   fly_above(patient, 50.0, 12.0);
   EXPECT_FALSE(patient.plan.lands);
   fly_above(patient, 20.0, 12.0);
   EXPECT_TRUE(patient.plan.lands);
 
-  Lander high;
-  high.order(CommandKind::return_home);
-  high.fly(120.0);
-  high.order(CommandKind::land);
+  OrderedDown high;
   fly_above(high, 10.0, 60.0);
   EXPECT_TRUE(high.plan.lands) << "the other sees it come, and gives way";
 }

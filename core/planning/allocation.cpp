@@ -22,8 +22,8 @@ namespace skein::planning {
 namespace {
 
 constexpr double kLeft = 1.0;
-/// An aircraft is flown off its path by so much in calm air.
-constexpr double kFlownOff_m = 1.0;
+/// Around an arc that touches a hazard an aircraft is flown some centimetres into it.
+constexpr double kArcRoom_m = 1.0;
 constexpr std::array<std::string_view, static_cast<std::size_t>(AllocationMethod::count)>
     kMethodNames{"best", "exact", "earliest", "colony", "polynomial", "greedy"};
 
@@ -166,9 +166,8 @@ Result<TaskPlan> plan_survey(const AllocationParams& params, const VehicleSpec& 
     if (other && (!leg || other->shortest_m < leg->shortest_m)) leg = std::move(other);
     return leg;
   };
-  // Around an arc that touches a hazard an aircraft is flown some centimetres into it.
   std::vector<Hazard> wide{hazards.begin(), hazards.end()};
-  for (Hazard& circle : wide) circle.radius_m += kFlownOff_m;
+  for (Hazard& circle : wide) circle.radius_m += kArcRoom_m;
   Result<Leg> leg = leg_among(wide);
   if (!leg) leg = leg_among(hazards);
   if (!leg) return leg.error();

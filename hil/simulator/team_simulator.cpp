@@ -334,9 +334,13 @@ class Team {
       ground_.end();
     } else {
       count_errors(i);
-      with_airframe ? vehicles_[i].end_with_program() : vehicles_[i].end_program(now, hazards_);
       finder_.on_agent_end(i);
-      if (!with_airframe) tell_plan(vehicles_[i], now);
+      if (with_airframe) {
+        vehicles_[i].end_with_program();
+      } else {
+        vehicles_[i].end_program(now, hazards_);
+        tell_plan(vehicles_[i], now);
+      }
     }
     nodes_[i].on = false;
     if (down_for) {
