@@ -50,7 +50,7 @@ void AgentLoop::step(Instant now) {
     spdlog::info("flight controller, {:.3f} s: {}", to_seconds(notice->time),
                  wording::text_of(notice->what));
     note(recording::NoticeGiven{*notice, stepped_at_});
-    node_.on_notice(*notice);
+    node_.on_notice(*notice, stepped_at_);
     hand_out();
   }
   note(recording::TimeoutGiven{stepped_at_});

@@ -190,6 +190,7 @@ void Initiator::send_award(std::vector<TaskAssignment> assignments, Instant now)
       std::min(authority_until(), std::max(announcement_.formed_at, now) + params_.first_lease());
   for (auto& entry : ledger_) entry.left_over = entry.ownership == Ownership::open;
   for (const auto& a : award.assignments) {
+    InstanceId& program = award.programs.emplace_back();
     Entry* entry = find(a.task);
     if (entry == nullptr) continue;
     entry->ownership = Ownership::leased;
@@ -204,6 +205,7 @@ void Initiator::send_award(std::vector<TaskAssignment> assignments, Instant now)
     } else if (const auto elector = electors_.find(a.vehicle); elector != electors_.end()) {
       entry->instance = elector->second.instance;  // its plan goes on under this leader
     }
+    program = entry->instance;
     entry->reported = TaskState::planned;
     entry->lease_until = award.lease_until;
     confirmed_[a.vehicle] = false;

@@ -110,6 +110,15 @@ TEST(Initiator, ATaskIsAnothersOnlyAGuardAfterItsLease) {
   EXPECT_TRUE(leader.newest<Initiator::TaskLost>());
 }
 
+TEST(Initiator, AwardsToTheProgramThatHasBid) {
+  Leader leader{2};
+  leader.hears_bid(kFirst, 1, {8});
+  leader.hears_bid(kSecond, 1, {9});
+  ASSERT_TRUE(leader.bids_close());
+  leader.awards({kSecond, kFirst});
+  EXPECT_EQ(leader.newest_message<Award>()->programs, (std::vector<InstanceId>{{9}, {8}}));
+}
+
 TEST(Initiator, KnowsWhatMayBeHeldAfterItIsClosed) {
   Leader leader{2};
   leader.stands({kFirst, kSecond});

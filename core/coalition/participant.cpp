@@ -22,7 +22,7 @@ bool is_by_operator(Reason reason) {
 }  // namespace
 
 Participant::Participant(const ProtocolParams& params, VehicleId self, InstanceId instance)
-    : params_{params}, self_{self}, elector_{params, self, instance} {}
+    : params_{params}, self_{self}, instance_{instance}, elector_{params, self, instance} {}
 
 void Participant::on_announcement(const Announcement& message, Instant now) {
   if (!makes_sense(message, now)) {
@@ -95,10 +95,7 @@ void Participant::on_award(const Award& message, Instant now) {
     return;
   }
   if (!machine_.in(State::bidding) && !machine_.in(State::rebidding) && !goes_on) return;
-  std::vector<TaskAssignment> mine;
-  for (const auto& a : message.assignments) {
-    if (a.vehicle == self_) mine.push_back(a);
-  }
+  std::vector<TaskAssignment> mine = awarded_in(message);
   if (mine.empty() || now >= message.lease_until) {
     const Reason reason = mine.empty() ? Reason::not_needed : Reason::award_too_late;
     if (!goes_on) leave(Event::not_awarded, {reason});
@@ -110,11 +107,21 @@ void Participant::on_award(const Award& message, Instant now) {
   outputs_.push(AwardReceived{message, std::move(mine)});
 }
 
+/// To this program, and no other under its number.
+std::vector<TaskAssignment> Participant::awarded_in(const Award& award) const {
+  std::vector<TaskAssignment> mine;
+  for (std::size_t i = 0; i < award.assignments.size(); ++i) {
+    if (award.assignments[i].vehicle != self_) continue;
+    const InstanceId program = i < award.programs.size() ? award.programs[i] : InstanceId{};
+    if (program == InstanceId{} || program == instance_) mine.push_back(award.assignments[i]);
+  }
+  return mine;
+}
+
 void Participant::accept(Instant now) {
   SKEIN_ASSERT(award_.has_value());
   if (!machine_.fire(Event::accepted)) return;
-  for (const auto& a : award_->assignments) {
-    if (a.vehicle != self_) continue;
+  for (const auto& a : awarded_in(*award_)) {
     std::erase_if(finished_, [&](const Finished& f) { return f.entry.task == a.task; });
     // Of a plan that was held for a successor, what has begun goes on.
     const auto held = std::find_if(leases_.begin(), leases_.end(),

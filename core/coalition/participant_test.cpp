@@ -105,6 +105,20 @@ TEST(Participant, AnAwardThatComesAfterItsLeaseIsNone) {
   EXPECT_TRUE(m.self.free());
 }
 
+TEST(Participant, AnAwardToAnotherProgramOfItsNumberIsNotItsOwn) {
+  Member m;
+  m.is_called(1);
+  m.bids();
+  m.award.programs = {InstanceId{2}};
+  m.is_awarded();
+  const auto released = newest<Participant::Released>(m.self);
+  ASSERT_TRUE(released);
+  EXPECT_EQ(released->why.reason, Reason::not_needed);
+  EXPECT_TRUE(m.self.free());
+  m.award.programs = {InstanceId{1}};
+  m.is_member_of(2);
+}
+
 TEST(Participant, ARenewalProlongsTheLeasesOfItsRound) {
   Member m;
   m.is_member_of(2);

@@ -11,6 +11,7 @@ namespace skein::mission {
 /// The states of a vehicle's parts, as far as they make its activity.
 struct PartStates {
   Failsafe::Action failsafe = Failsafe::Action::none;
+  bool piloted = false;
   bool lands = false;   ///< comes down by order, or has
   bool landed = false;  ///< and is on the ground
   bool has_task = false;
@@ -64,8 +65,10 @@ struct DetailRule {
 };
 /// Earlier entries take precedence; where none holds, the activity says it all.
 inline constexpr std::array kDetailRules{
-    DetailRule{[](const PartStates& s) { return s.landed || s.lands; }, ActivityDetail::none},
+    DetailRule{[](const PartStates& s) { return s.landed; }, ActivityDetail::none},
     DetailRule{[](const PartStates& s) { return s.on_ground; }, ActivityDetail::on_ground},
+    DetailRule{[](const PartStates& s) { return s.piloted; }, ActivityDetail::piloted},
+    DetailRule{[](const PartStates& s) { return s.lands; }, ActivityDetail::none},
     DetailRule{[](const PartStates& s) { return s.takes_off; }, ActivityDetail::taking_off},
     DetailRule{[](const PartStates& s) { return !s.begun; }, ActivityDetail::not_begun},
     DetailRule{[](const PartStates& s) { return s.avoids_traffic; },

@@ -109,6 +109,8 @@ class FlownAgent : public HeardAgent {
     HeardAgent::tell(command, at_seconds(now_s_));
   }
 
+  void be_piloted(bool piloted) { agent.on_piloted(piloted, at_seconds(now_s_)); }
+
   void tell(const Message& message) { HeardAgent::tell(message, at_seconds(now_s_)); }
   /// Why it does not; what it flies from then on is known with its next state.
   std::string keep(const Fence& fence) { return agent.keep_fence(fence, at_seconds(now_s_)); }

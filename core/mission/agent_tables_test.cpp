@@ -123,6 +123,10 @@ TEST(AgentTables, ADetailTellsWhatAnActivityLeavesOpen) {
             ActivityDetail::on_ground);
   EXPECT_EQ(detail_of({.begun = false}), ActivityDetail::not_begun);
   EXPECT_EQ(detail_of({.lands = true, .homes = true, .at_home = true}), ActivityDetail::none);
+  EXPECT_EQ(detail_of({.failsafe = Action::stay, .piloted = true}), ActivityDetail::piloted);
+  EXPECT_EQ(detail_of({.piloted = true, .lands = true}), ActivityDetail::piloted);
+  EXPECT_EQ(detail_of({.piloted = true, .lands = true, .landed = true}), ActivityDetail::none);
+  EXPECT_EQ(detail_of({.piloted = true, .on_ground = true}), ActivityDetail::on_ground);
 }
 
 /// After a change of a table, paste what this prints into docs/protocol.md.

@@ -36,12 +36,8 @@ EventBody body_of(EventKind kind) {
   return body_at(static_cast<std::size_t>(kind));
 }
 
-std::optional<bool> tells_piloted(const EventBody& news) {
-  const auto* order = std::get_if<event::Commanded>(&news);
-  if (order != nullptr && order->command == CommandKind::give_back) return false;
-  const auto* told = std::get_if<event::FlightWarning>(&news);
-  if (told == nullptr) return std::nullopt;
-  switch (told->notice.news) {
+std::optional<bool> tells_piloted(AutopilotNews news) {
+  switch (news) {
     case AutopilotNews::mode_changed:
     case AutopilotNews::armed_by_others:
     case AutopilotNews::not_obeying:

@@ -2,6 +2,7 @@
 #include "failsafe.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace skein::mission {
 namespace {
@@ -34,6 +35,7 @@ const Failsafe::Response* Failsafe::update(Instant now, const News& news) {
     response = &kIdInUse;
   }
   if (news.bar) response = on_bar(*news.bar);
+  if (news.piloted) response = on_piloted(*news.piloted);
   if (news.spare_s && watch_range(*news.spare_s, now)) response = &kRangeSpent;
   if (news.left_fence && !facts_.left_fence) {
     facts_.left_fence = true;
@@ -53,9 +55,11 @@ const Failsafe::Response* Failsafe::update(Instant now, const News& news) {
   return response;
 }
 
-/// The response that its bar asks for; null where there is none, or its range is for the way home.
+/// The response that what bars it asks for; null where there is none, or its range is for the way
+/// home.
 const Failsafe::Response* Failsafe::barred() const {
   if (facts_.range_spent) return nullptr;
+  if (facts_.piloted) return &kPiloted;
   if (facts_.setup_differs) return &kSetupDiffers;
   return facts_.orders_unknown ? &kOrdersUnknown : nullptr;
 }
@@ -67,7 +71,16 @@ const Failsafe::Response* Failsafe::on_bar(Bar bar) {
   facts_.orders_unknown = bar == Bar::orders_unknown;
   if (facts_.ordered) return nullptr;
   if (bar != Bar::none) return barred();
-  return was_barred ? &kMayWork : nullptr;
+  return was_barred && !facts_.piloted ? &kMayWork : nullptr;
+}
+
+/// What it is ordered stands meanwhile, and is obeyed afterwards.
+const Failsafe::Response* Failsafe::on_piloted(bool piloted) {
+  if (std::exchange(facts_.piloted, piloted) == piloted || facts_.ordered) return nullptr;
+  if (piloted) return &kPiloted;
+  if (facts_.left_fence) return &kLeftFence;
+  const Response* still = barred();
+  return still != nullptr ? still : &kMayWork;
 }
 
 /// True when it is news that the range is spent.

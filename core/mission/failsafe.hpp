@@ -30,6 +30,7 @@ class Failsafe {
     bool id_in_use = false;       ///< by another vehicle too
     bool setup_differs = false;   ///< from the ground station's
     bool orders_unknown = false;  ///< to a program that has started anew
+    bool piloted = false;         ///< others fly the aircraft: its pilot, or its autopilot
     bool left_fence = false;      ///< or would have, since the operator last told it to go on
     bool range_spent = false;     ///< what is left of its range is for the way home
     bool ordered = false;         ///< by the operator to hold, to come home or to land
@@ -46,6 +47,7 @@ class Failsafe {
       Rule{"setup_differs", &Facts::setup_differs, Action::stay, coalition::Reason::setup_differs},
       Rule{"orders_unknown", &Facts::orders_unknown, Action::stay,
            coalition::Reason::orders_unknown},
+      Rule{"piloted", &Facts::piloted, Action::stay, coalition::Reason::piloted},
       Rule{"left_fence", &Facts::left_fence, Action::come_home, coalition::Reason::outside_fence},
       Rule{"range_spent", &Facts::range_spent, Action::come_home, coalition::Reason::out_of_range},
       Rule{"ordered", &Facts::ordered, Action::obey, coalition::Reason::held_by_operator},
@@ -82,6 +84,8 @@ class Failsafe {
                                           Lead::put_off, Manoeuvre::hold};
   static constexpr Response kOrdersUnknown{"orders_unknown", Reason::orders_unknown, true,
                                            Lead::put_off, Manoeuvre::hold};
+  static constexpr Response kPiloted{"piloted", Reason::piloted, true, Lead::handed_on,
+                                     Manoeuvre::hold};
   static constexpr Response kMayWork{"may_work", Reason::none, false, Lead::kept,
                                      Manoeuvre::search};
   static constexpr Response kRangeSpent{"range_spent", Reason::out_of_range, true, Lead::handed_on,
@@ -95,8 +99,8 @@ class Failsafe {
   static constexpr Response kLand{"land", Reason::sent_home, true, Lead::put_off, Manoeuvre::land};
   static constexpr Response kResume{"resume", Reason::none, false, Lead::kept, Manoeuvre::search};
   static constexpr std::array kResponses{kPathBarred, kIdInUse,    kSetupDiffers, kOrdersUnknown,
-                                         kMayWork,    kRangeSpent, kLeftFence,    kHold,
-                                         kReturnHome, kLand,       kResume};
+                                         kPiloted,    kMayWork,    kRangeSpent,   kLeftFence,
+                                         kHold,       kReturnHome, kLand,         kResume};
 
   /// One of these at a time.
   struct News {
@@ -104,6 +108,7 @@ class Failsafe {
     bool left_fence = false;      ///< it is outside, or what it flies leads there soon
     bool id_in_use = false;       ///< another vehicle was heard under its number
     std::optional<Bar> bar = {};  ///< what keeps it from working with the others
+    std::optional<bool> piloted = {};
     std::optional<double> spare_s =
         {};  ///< for how long it can surely fly on before it must turn for home
     std::optional<CommandKind> order = {};  ///< new, from the operator
@@ -131,6 +136,7 @@ class Failsafe {
 
  private:
   [[nodiscard]] const Response* on_bar(Bar bar);
+  [[nodiscard]] const Response* on_piloted(bool piloted);
   [[nodiscard]] const Response* barred() const;
   [[nodiscard]] bool watch_range(double spare_s, Instant now);
 

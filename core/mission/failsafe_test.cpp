@@ -39,6 +39,33 @@ TEST(Failsafe, AFenceThatIsLeftIsNewsOnceUntilItMayGoOn) {
   EXPECT_EQ(failsafe.action(), Action::obey);
 }
 
+TEST(Failsafe, WhoIsPilotedTakesNothingUpUntilItIsGivenBack) {
+  Failsafe failsafe;
+  EXPECT_EQ(failsafe.update({}, {.piloted = false}), nullptr) << "nobody had it";
+  EXPECT_EQ(failsafe.update({}, {.piloted = true}), &Failsafe::kPiloted);
+  EXPECT_EQ(failsafe.update({}, {.piloted = true}), nullptr);
+  EXPECT_EQ(failsafe.action(), Action::stay);
+  EXPECT_EQ(failsafe.reason(), coalition::Reason::piloted);
+  EXPECT_EQ(failsafe.update({}, {.bar = Bar::setup_differs}), &Failsafe::kPiloted);
+  EXPECT_EQ(failsafe.update({}, {.bar = Bar::none}), nullptr) << "its pilot has it still";
+  EXPECT_EQ(failsafe.update({}, {.piloted = false}), &Failsafe::kMayWork);
+  EXPECT_EQ(failsafe.action(), Action::none);
+}
+
+TEST(Failsafe, WhatIsOrderedOrHappensMeanwhileStandsWhenItIsGivenBack) {
+  Failsafe failsafe;
+  failsafe.update({}, {.piloted = true});
+  EXPECT_EQ(failsafe.update({}, {.order = CommandKind::hold}), &Failsafe::kHold);
+  EXPECT_EQ(failsafe.update({}, {.order = CommandKind::resume}), &Failsafe::kPiloted);
+  failsafe.update({}, {.order = CommandKind::return_home});
+  EXPECT_EQ(failsafe.update({}, {.piloted = false}), nullptr);
+  EXPECT_EQ(failsafe.action(), Action::obey);
+  failsafe.update({}, {.order = CommandKind::resume});
+  failsafe.update({}, {.piloted = true});
+  failsafe.update({}, {.left_fence = true});
+  EXPECT_EQ(failsafe.update({}, {.piloted = false}), &Failsafe::kLeftFence);
+}
+
 TEST(Failsafe, EveryOrderIsObeyedAtOnce) {
   Failsafe failsafe;
   EXPECT_EQ(failsafe.update({}, {.order = CommandKind::hold}), &Failsafe::kHold);

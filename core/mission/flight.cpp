@@ -107,11 +107,14 @@ void Flight::set_planning_radius(double radius_m) {
 void Flight::start(const Pose2& pose, const std::vector<Hazard>& hazards, double range_m,
                    Instant now) {
   first_pose_ = pose;
-  // Straight on until the first path begins.
+  begin_at(pose, now);  // until the first path begins
+  search_from(now + std::max(lead_in_, handover_), hazards, range_m, now);
+}
+
+void Flight::begin_at(const Pose2& pose, Instant now) {
   TimedPath here = begun(now, vehicle_.cruise_speed_mps, 0.0);
   here.path.start = pose;
-  replace(here);
-  search_from(now + std::max(lead_in_, handover_), hazards, range_m, now);
+  take_up(here, now);
 }
 
 void Flight::start_route(const TimedPath& route) {
@@ -161,18 +164,21 @@ namespace {
 /// What a pace may be changed by so that a plan is on time both where it begins and at its gate.
 constexpr double kPaceShare = 0.1;
 constexpr int kPacesTried = 8;
+/// What a plan may be off by where it begins: some metres.
+constexpr Duration kBeginsOff = std::chrono::milliseconds{300};
 
-/// At `begin_m` at that moment, and at on_time_m when it is to be there: by its pace. What that
-/// cannot make up for, the plan is off by where it begins.
-void be_on_time(TimedPath& timed, double begin_m, Instant at, Instant on_time_at) {
+/// At its begin now, and at on_time_m when it is to be there: by its pace. What that cannot make up
+/// for, the plan is off by where it begins, and for the rest at on_time_m.
+void be_on_time(TimedPath& timed, Instant now, Instant on_time_at) {
   const double mean_mps = timed.speed_mps;
-  const double wanted_s = to_seconds(on_time_at - at);
+  const double wanted_s = to_seconds(on_time_at - now);
   for (int i = 0; wanted_s > 0.0 && i < kPacesTried; ++i) {
-    const double takes_s = to_seconds(timed.time_at(timed.on_time_m) - timed.time_at(begin_m));
+    const double takes_s = to_seconds(timed.time_at(timed.on_time_m) - timed.time_at(0.0));
     timed.speed_mps = std::clamp(timed.speed_mps * takes_s / wanted_s,
                                  (1.0 - kPaceShare) * mean_mps, (1.0 + kPaceShare) * mean_mps);
   }
-  timed.start_time += on_time_at - timed.time_at(timed.on_time_m);
+  const Duration off = on_time_at - timed.time_at(timed.on_time_m);
+  timed.start_time += std::clamp(off, -kBeginsOff, kBeginsOff);
 }
 
 }  // namespace
@@ -194,7 +200,7 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
     timed.start_time = at - (timed.time_at(before_m) - now);
   }
   if (timed.has_wind() && pace && pace->on_time_at) {
-    be_on_time(timed, before_m, at, *pace->on_time_at);
+    be_on_time(timed, now, *pace->on_time_at);
   }
   take_up(timed, now);
   return true;

@@ -26,6 +26,8 @@ class Flight {
   void start_route(const TimedPath& route);
   /// A path that begins where this plan is then.
   void fly(const TimedPath& timed);
+  /// Straight on from there, wherever the plan is.
+  void begin_at(const Pose2& pose, Instant now);
   /// The same of a way onto a route and the route.
   void fly_route(const TimedPath& timed, Instant now);
   [[nodiscard]] bool en_route(Instant t) const { return en_route_ && t < plan_.timed.end_time(); }

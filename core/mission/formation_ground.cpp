@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -58,6 +59,21 @@ std::string metres_of(double m) {
   std::array<char, 32> text{};
   static_cast<void>(std::snprintf(text.data(), text.size(), "%.1f m", m));
   return text.data();
+}
+
+/// Corners of a mover's way; points of one that goes around.
+std::vector<Vec3> way_of(const Change& change, const formation::ChangeMotion& motion,
+                         std::size_t mover) {
+  const auto& points = change.movers[mover].points;
+  if (!change.roundabout || change.movers[mover].level == 0) return {points.begin(), points.end()};
+  constexpr double kApart_m = 0.5;
+  const double longest_m = motion.speed_max_mps(mover) * to_seconds(motion.duration());
+  const auto parts = static_cast<Duration::rep>(std::ceil(longest_m / kApart_m)) + 1;
+  std::vector<Vec3> way;
+  for (Duration::rep i = 0; i <= parts; ++i) {
+    way.push_back(motion.position(mover, motion.duration() * i / parts));
+  }
+  return way;
 }
 
 }  // namespace
@@ -153,10 +169,13 @@ Result<void> FormationGround::within_heights(const std::vector<Transfer>& transf
 Result<void> FormationGround::within_fence(const Change& change) const {
   const Fence& fence = config_.fence;
   if (!fence.exists()) return {};
-  for (const formation::Mover& mover : change.movers) {
-    for (std::size_t i = 0; i + 1 < mover.points.size(); ++i) {
-      const Vec3& from = mover.points[i];
-      const Vec3& to = mover.points[i + 1];
+  const formation::ChangeMotion motion{change};
+  for (std::size_t m = 0; m < change.movers.size(); ++m) {
+    const formation::Mover& mover = change.movers[m];
+    const std::vector<Vec3> way = way_of(change, motion, m);
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+      const Vec3& from = way[i];
+      const Vec3& to = way[i + 1];
       if (to.z() > std::max(fence.height_max_m, from.z())) {
         return Error{name_of(mover.vehicle) + " would be " + metres_of(to.z()) +
                      " high, and the fence ends at " + metres_of(fence.height_max_m) +

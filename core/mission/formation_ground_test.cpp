@@ -183,6 +183,30 @@ TEST(FormationGround, LeadsNobodyOutOfTheFence) {
   EXPECT_THAT(high.error().message, HasSubstr("60.0 m high, and the fence ends at 50.0 m"));
 }
 
+TEST(FormationGround, LeadsNobodyAroundOutsideOfTheFence) {
+  FormationOrder order;  // past the second vehicle, which comes to the rally
+  order.kind = OrderKind::form;
+  order.shape.centre = {-12.0, 0.0, 10.0};
+  order.places = 1;
+  for (const double half_width_m : {20.0, 0.5}) {
+    const Fence fence{{{-20.0, -half_width_m},
+                       {20.0, -half_width_m},
+                       {20.0, half_width_m},
+                       {-20.0, half_width_m}},
+                      50.0};
+    Team team{{{12.0, 0.0, 0.0}, {-12.0, 0.0, 0.0}}, fence};
+    ASSERT_TRUE(team.goes_up());
+    const auto around = team.ground().preview(order);
+    if (half_width_m > 10.0) {
+      ASSERT_TRUE(around.ok()) << around.error().message;
+      EXPECT_EQ(around->planned.way, formation::Way::roundabout);
+    } else {
+      ASSERT_FALSE(around.ok());
+      EXPECT_THAT(around.error().message, HasSubstr(" leads out of the fence at ["));
+    }
+  }
+}
+
 TEST(FormationGround, WhoIsOutsideOfTheFenceMayLandAndComeIn) {
   const Fence fence{{{10.0, -20.0}, {50.0, -20.0}, {50.0, 20.0}, {10.0, 20.0}}, 50.0};
   Team team{{{0.0, 0.0, 0.0}}, fence};

@@ -147,17 +147,24 @@ void GroundAgent::on_request(const AuthorisationRequest& request, Instant now) {
   }
   if (tell_what_is_over(request, now) || granted_to_another(request) != nullptr) return;
   if (pending_.size() >= kAuthorisationsMax) pending_.erase(pending_.begin());
-  const Authorisation* before = granted_before(request);
-  const auto again = before == nullptr ? std::nullopt : std::optional{*before};
   pending_.push_back({request, now, std::nullopt});
-  if (again && now < request.decide_by) grant_again(pending_.back(), *again, now);
+  grant_again(pending_.back(), now);
 }
 
-/// The same deliveries in another round: the operator's approval is of those.
-void GroundAgent::grant_again(PendingAuthorisation& pending, Authorisation before, Instant now) {
-  if (why_not_grant(pending.request, now)) return;
-  before.round = pending.request.round;
-  say(pending, before, now, {});
+/// Where the same deliveries were granted in another round: the operator's approval is of those.
+void GroundAgent::grant_again(PendingAuthorisation& pending, Instant now) {
+  if (watching_ || pending.decision || now >= pending.request.decide_by) return;
+  const Authorisation* before = granted_before(pending.request);
+  if (before == nullptr || why_not_grant(pending.request, now)) return;
+  Authorisation again = *before;
+  again.round = pending.request.round;
+  say(pending, again, now, {});
+}
+
+void GroundAgent::set_watching(bool watching, Instant now) {
+  watching_ = watching;
+  if (watching) return commands_.clear();  // who has not heard them asks who has the command
+  for (PendingAuthorisation& pending : pending_) grant_again(pending, now);
 }
 
 void GroundAgent::on_status(const coalition::MemberStatus& status) {

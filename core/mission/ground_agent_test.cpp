@@ -442,6 +442,27 @@ TEST(GroundAgent, ASuccessorsPlanIsGrantedWithoutAskingAgain) {
   EXPECT_TRUE(other.agent.authorisations().back().decision);
 }
 
+TEST(GroundAgent, WhoWatchesGrantsASuccessorsPlanOnceItHasTheCommand) {
+  Bench bench;
+  const auto first = request(1, 40.0, 50.0);
+  bench.agent.set_watching(true, at_seconds(5.0));
+  bench.ask(first, 10.0);
+  Authorisation grant{.round = first.round, .site = kSite, .granted = true, .decided_by = "Ada"};
+  grant.decided_at = at_seconds(12.0);
+  bench.agent.overhear(Message{grant}, at_seconds(12.0));
+  (void)bench.events();
+  bench.ask(passed_on(first), 30.0);
+  EXPECT_FALSE(bench.agent.authorisations().back().decision);
+  EXPECT_TRUE(bench.sent<Authorisation>().empty());
+  bench.agent.set_watching(false, at_seconds(32.0));
+  const auto sent = bench.sent<Authorisation>();
+  EXPECT_NE(std::ranges::find(sent, passed_on(first).round, &Authorisation::round), sent.end());
+  const auto told = bench.events();
+  EXPECT_TRUE(std::ranges::any_of(told, [&](const MissionEvent& e) {
+    return e.kind() == EventKind::authorised && e.round == passed_on(first).round;
+  })) << "the operator, and the audit";
+}
+
 TEST(GroundAgent, AGrantIsOfTheDeliveriesThatTheOperatorHasSigned) {
   bool may_sign = false;
   GroundAgentConfig config;

@@ -63,7 +63,7 @@ void GroundNode::note_refusal(const Authorisation& decision, Instant now) {
 
 void GroundNode::watch(Instant now) {
   watching_ = true;
-  agent_.set_watching(true);
+  agent_.set_watching(true, now);
   // What it had ordered goes on as long as who has the command now lets it.
   landings_.forget();
   returns_.forget();
@@ -76,7 +76,7 @@ void GroundNode::take_command(InstanceId start, Instant now) {
   reign_from_ = agent_.newest_order() + 1;
   told_.clear();
   watching_ = false;
-  agent_.set_watching(false);
+  agent_.set_watching(false, now);
   start_ = start;
   speak();
 }

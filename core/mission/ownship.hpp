@@ -36,6 +36,9 @@ class Ownship {
   [[nodiscard]] const VehicleSpec& spec() const { return config_.vehicle; }
   [[nodiscard]] const VehicleState& state() const { return state_; }
   [[nodiscard]] const std::vector<Hazard>& hazards() const { return hazards_.all(); }
+  /// The same, a metre larger, for tasks: an arc that touches a hazard is flown some centimetres
+  /// within it.
+  [[nodiscard]] std::vector<Hazard> hazards_around_tasks() const;
   [[nodiscard]] std::uint8_t loads() const { return loads_; }
   /// Of the turns that are planned now: the vehicle's, or wider where the wind takes that.
   [[nodiscard]] double planning_radius_m() const { return turn_room_.radius_m(); }
@@ -53,6 +56,13 @@ class Ownship {
   void take_route_back();
 
   [[nodiscard]] std::optional<Guidance> poll_guidance();
+
+  /// The plan is where the vehicle is, and straight on: others have flown it. Precondition:
+  /// flight().started().
+  void begin_here(Instant now) {
+    descent_.reset();
+    flight_.begin_at(begins_at(state_), now);
+  }
 
   // Flight, around the known hazards. Precondition: flight().started().
   void search(Instant now) {

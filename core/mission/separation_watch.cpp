@@ -97,18 +97,11 @@ void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& o
   }
   const ActivityDetail in_detail = other.detail;
   known.gives_way_too = in_detail == ActivityDetail::avoiding_traffic;
+  known.piloted = in_detail == ActivityDetail::piloted;
   known.state = other.state;
   known.activity = other.activity;
   known.heard = now;
   known.delay = std::clamp(now - other.state.time, Duration{}, kDelayMost);
-}
-
-void SeparationWatch::on_piloted(VehicleId who, bool piloted) {
-  if (!piloted) {
-    piloted_.erase(who);
-  } else if (piloted_.size() < kVehiclesMax || who == self_) {
-    piloted_.insert(who);
-  }
 }
 
 bool SeparationWatch::any_conflict() const {
@@ -326,9 +319,8 @@ void SeparationWatch::end_when_clear(VehicleId id, Other& other, bool breaks, In
 void SeparationWatch::decide(VehicleId id, Other& other, const Self& self, const Approach& a,
                              Instant now) {
   if (other.yields) return;
-  const bool both_piloted = piloted_.contains(self_) && piloted_.contains(id);
-  if (piloted_.contains(self_)) {
-    other.gives_way = both_piloted ? VehicleId{} : id;
+  if (piloted_) {
+    other.gives_way = other.piloted ? VehicleId{} : id;
     return;
   }
   const bool unmoved =
@@ -350,7 +342,7 @@ void SeparationWatch::decide(VehicleId id, Other& other, const Self& self, const
 
 bool SeparationWatch::must_yield(VehicleId id, const Other& other, const Self& self,
                                  Instant now) const {
-  const bool keeps = piloted_.contains(id) || now - other.heard > kSilent ||
+  const bool keeps = other.piloted || now - other.heard > kSilent ||
                      other.activity == Activity::forming || other.activity == Activity::landing;
   if (keeps) return true;
   if (self.activity == Activity::landing) return false;  // its autopilot flies it down

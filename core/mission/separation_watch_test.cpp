@@ -64,6 +64,7 @@ class Flyer {
     told.vehicle = id();
     told.state = state;
     told.activity = activity;
+    told.detail = detail;
     return told;
   }
   [[nodiscard]] VehicleId id() const { return VehicleId{id_}; }
@@ -71,6 +72,7 @@ class Flyer {
   SeparationWatch watch;
   VehicleState state;
   Activity activity = Activity::searching;
+  ActivityDetail detail = ActivityDetail::none;
   bool can_change_height = true;
   double sinks_mps = 0.0;  ///< its autopilot leads it down
   bool speaks = true;
@@ -241,7 +243,8 @@ TEST(SeparationWatch, WhoExecutesATaskKeepsItsHeight) {
 TEST(SeparationWatch, WhoIsPilotedIsGivenWayTo) {
   Sky sky = head_on();
   sky.flyers[1].can_change_height = false;
-  for (Flyer& flyer : sky.flyers) flyer.watch.on_piloted(VehicleId{2}, true);
+  sky.flyers[1].watch.on_piloted(true);
+  sky.flyers[1].detail = ActivityDetail::piloted;
   sky.fly(60.0);
   EXPECT_TRUE(sky.flyers[0].gave_way);
   EXPECT_FALSE(sky.flyers[1].gave_way);
@@ -367,15 +370,10 @@ TEST_P(Geometries, ExactlyOneGivesWayAndTheMinimumIsKept) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Geometries, ::testing::Range(1, 9));
 
-TEST(TellsPiloted, WhoFliesAnAircraftIsDataOfItsEvents) {
-  const auto warns = [](AutopilotNews news) {
-    return EventBody{event::FlightWarning{{.news = news}}};
-  };
-  EXPECT_EQ(tells_piloted(warns(AutopilotNews::mode_changed)), true);
-  EXPECT_EQ(tells_piloted(warns(AutopilotNews::flying)), false);
-  EXPECT_EQ(tells_piloted(warns(AutopilotNews::pre_arm)), std::nullopt);
-  EXPECT_EQ(tells_piloted(event::Commanded{CommandKind::give_back}), false);
-  EXPECT_EQ(tells_piloted(event::Commanded{CommandKind::hold}), std::nullopt);
+TEST(TellsPiloted, WhoFliesAnAircraftIsDataOfItsNotices) {
+  EXPECT_EQ(tells_piloted(AutopilotNews::mode_changed), true);
+  EXPECT_EQ(tells_piloted(AutopilotNews::flying), false);
+  EXPECT_EQ(tells_piloted(AutopilotNews::pre_arm), std::nullopt);
 }
 
 }  // namespace

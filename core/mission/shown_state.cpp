@@ -48,7 +48,8 @@ std::string_view to_string(ShownState state) {
       "standing_by",
       "landing",
       "landed",
-      "keeping_clear_of_traffic"};
+      "keeping_clear_of_traffic",
+      "piloted"};
   return kNames.at(static_cast<std::size_t>(state));
 }
 
@@ -74,7 +75,8 @@ ShownState shown_state(Activity activity, ActivityDetail in_detail) {
                                       ShownState::range_reserve,
                                       ShownState::back_into_its_fence,
                                       ShownState::not_worked_with,
-                                      ShownState::keeping_clear_of_traffic};
+                                      ShownState::keeping_clear_of_traffic,
+                                      ShownState::piloted};
   static_assert(kStates.size() + 1 == static_cast<std::size_t>(ActivityDetail::count));
   if (in_detail == ActivityDetail::none) return of_activity(activity);
   return kStates.at(static_cast<std::size_t>(in_detail) - 1);

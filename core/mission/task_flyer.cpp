@@ -193,7 +193,7 @@ std::variant<TaskFlight, coalition::Why> TaskFlyer::set_out(TaskFlight task, dou
   }
   task.plan = *plan;
   std::optional<double> tail;
-  Flight::Pace pace{speed_mps, plan->gate_m, {}};
+  Flight::Pace pace{speed_mps, plan->gate_m, plan->timed.time_at(plan->gate_m)};
   if (task.is_delivery()) {  // as far as the gate, and hold there
     const auto to_gate = plan->timed.piece(0.0, plan->gate_m);
     if (!to_gate) return Why{Reason::path_too_long};

@@ -44,7 +44,7 @@ void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
                         [&](const HazardReport& m) { on_hazard(m, now); },
                         [&](const Telemetry& m) { on_telemetry(m, now); },
                         [](const AuthorisationRequest&) {},
-                        [&](const MissionEvent& m) { on_event(m); },
+                        [](const MissionEvent&) {},
                         [](const formation::Change&) {},
                         [](const FormationStatus&) {},
                         [](const PlanReport&) {},
@@ -221,7 +221,7 @@ RouteStanding VehicleAgent::Impl::route_standing() const {
   const Failsafe::Facts& facts = failsafe_.facts();
   return {.orders_unknown = facts.orders_unknown,
           .setup_differs = facts.setup_differs,
-          .obeys_others = facts.ordered || facts.range_spent || facts.left_fence,
+          .obeys_others = facts.ordered || facts.range_spent || facts.left_fence || facts.piloted,
           .has_task = flyer_.flying() || scout_.flying() || leader_.leading()};
 }
 
@@ -249,6 +249,7 @@ PartStates VehicleAgent::Impl::part_states() const {
   const Flight& flight = ownship_.flight();
   const Instant at = ownship_.state().time;
   return {.failsafe = failsafe_.action(),
+          .piloted = failsafe_.facts().piloted,
           .lands = ownship_.landing(),
           .landed = ownship_.landing() && ownship_.state().on_ground(),
           .has_task = flyer_.flying(),
@@ -322,7 +323,7 @@ Instant VehicleAgent::quiet_until(Instant now) const { return impl_->quiet_until
 Telemetry VehicleAgent::telemetry() const { return impl_->telemetry(); }
 Activity VehicleAgent::activity() const { return impl_->activity(); }
 Counters VehicleAgent::counters() const { return impl_->counters(); }
-void VehicleAgent::on_piloted(bool piloted) { impl_->on_piloted(piloted); }
+void VehicleAgent::on_piloted(bool piloted, Instant now) { impl_->on_piloted(piloted, now); }
 bool VehicleAgent::watches_others() const { return impl_->separation().watches(); }
 std::optional<SeparationConflict> VehicleAgent::separation_conflict() const {
   return impl_->separation().conflict();

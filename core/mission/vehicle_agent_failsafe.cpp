@@ -72,15 +72,27 @@ void VehicleAgent::Impl::on_telemetry(const Telemetry& message, Instant now) {
   respond(*response, now);
 }
 
-void VehicleAgent::Impl::on_event(const MissionEvent& message) {
-  if (const auto piloted = tells_piloted(message.body)) {
-    separation_.on_piloted(message.vehicle, *piloted);
+/// What was flown before is nowhere near: who is given back goes on from where it is.
+void VehicleAgent::Impl::on_piloted(bool piloted, Instant now) {
+  separation_.on_piloted(piloted);
+  const bool is_given_back = failsafe_.facts().piloted && !piloted;
+  const auto* response = failsafe_.update(now, {.piloted = piloted});
+  const bool stands = ownship_.landing() && ownship_.state().on_ground();
+  if (!ownship_.flight().started() || stands) return;
+  if (is_given_back) {
+    const bool homes = ownship_.flight().homing() || ownship_.landing();
+    ownship_.begin_here(now);
+    failsafe_.look_again(now);
+    if (response == nullptr) homes ? ownship_.fly_home(now) : ownship_.hold(now);
   }
+  if (response != nullptr) respond(*response, now);
+  step(now);
 }
 
 /// Who stands, takes off, comes down or is flown by a pilot is only warned.
 bool VehicleAgent::Impl::may_leave_layer() const {
-  if (!ownship_.flight().started() || ownship_.landing() || piloted_) return false;
+  if (!ownship_.flight().started() || ownship_.landing()) return false;
+  if (failsafe_.facts().piloted) return false;
   const VehicleState& state = ownship_.state();
   const bool high = state.z_m > 0.5 * ownship_.spec().height_m;
   return !state.on_ground() && (high || traffic_.gives_way() || separation_.off_layer());
@@ -133,10 +145,11 @@ void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
 /// While it still can it turns for home (or holds, to be recovered), whatever it was about. Only a
 /// run that has begun is flown to its end: that was planned with the way home.
 void VehicleAgent::Impl::watch_range(Instant now) {
-  // Who is on the way home leads as long as others fly what it awarded.
+  // Who is on the way home, or piloted, leads as long as others fly what it awarded.
   const Failsafe::Facts& facts = failsafe_.facts();
   if (facts.range_spent) leader_.hand_on(coalition::Reason::out_of_range, now);
   if (facts.left_fence) leader_.hand_on(coalition::Reason::outside_fence, now);
+  if (facts.piloted) leader_.hand_on(coalition::Reason::piloted, now);
   say_last_words(now);
   if (!failsafe_.wants_range(now) || flyer_.in_run()) return;
   const auto* response = failsafe_.update(now, {.spare_s = ownship_.spare_s(now)});

@@ -37,10 +37,7 @@ class VehicleAgent::Impl {
   [[nodiscard]] Telemetry telemetry() const;
   [[nodiscard]] Activity activity() const;
   [[nodiscard]] Counters counters() const;
-  void on_piloted(bool piloted) {
-    piloted_ = piloted;
-    separation_.on_piloted(outbox.self, piloted);
-  }
+  void on_piloted(bool piloted, Instant now);
   [[nodiscard]] const SeparationWatch& separation() const { return separation_; }
   [[nodiscard]] const TrafficWatch& traffic() const { return traffic_; }
   [[nodiscard]] bool range_spent() const { return failsafe_.facts().range_spent; }
@@ -71,7 +68,6 @@ class VehicleAgent::Impl {
   void on_site(const SiteReport& message, Instant now);
   void on_hazard(const HazardReport& told, Instant now);
   void on_telemetry(const Telemetry& message, Instant now);
-  void on_event(const MissionEvent& message);
   [[nodiscard]] RouteStanding route_standing() const;
   void watch_range(Instant now);
   void watch_wind(const VehicleState& state, Instant now);
@@ -90,7 +86,6 @@ class VehicleAgent::Impl {
   RelayOrbit relay_{ownship_};
   SeparationWatch separation_;
   TrafficWatch traffic_;
-  bool piloted_ = false;
   CommandFilter commands_;
   std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   bool lands_ = false;                         ///< by order, once it is at home

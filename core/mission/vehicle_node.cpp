@@ -407,11 +407,12 @@ void VehicleNode::on_planning_result(const PlanningResult& result, Instant now) 
   impl_->take_guidance();
 }
 
-void VehicleNode::on_notice(const FlightNotice& notice) {
-  const EventBody news = event::FlightWarning{notice.what};
-  if (const auto piloted = tells_piloted(news)) impl_->agent->on_piloted(*piloted);
-  if (!notice.warning) return;
-  impl_->report(news, notice.time);
+void VehicleNode::on_notice(const FlightNotice& notice, Instant now) {
+  if (const auto piloted = tells_piloted(notice.what.news)) {
+    impl_->agent->on_piloted(*piloted, now);
+    impl_->take_guidance();
+  }
+  if (notice.warning) impl_->report(event::FlightWarning{notice.what}, notice.time);
 }
 
 void VehicleNode::on_condition(const Condition& condition) { impl_->condition = condition; }

@@ -136,8 +136,8 @@ TEST(VehicleNode, IsGivenBackByThatCommandToThisVehicleOnceEach) {
 
 TEST(VehicleNode, TheFlightControllersWarningsAreForTheOperator) {
   Vehicle vehicle;
-  vehicle.node.on_notice({at_seconds(0.5), false, {AutopilotNews::found}});
-  vehicle.node.on_notice({at_seconds(0.7), true, {AutopilotNews::rebooted}});
+  vehicle.node.on_notice({at_seconds(0.5), false, {AutopilotNews::found}}, at_seconds(0.5));
+  vehicle.node.on_notice({at_seconds(0.7), true, {AutopilotNews::rebooted}}, at_seconds(0.7));
   vehicle.drain();
   const auto events = vehicle.said_of<MissionEvent>();
   ASSERT_EQ(events.size(), 1U);

@@ -88,7 +88,7 @@ bool is_recalled(ShownState state) {
 }
 bool is_out_of_work(ShownState state) {
   return state == ShownState::range_reserve || state == ShownState::not_worked_with ||
-         state == ShownState::back_into_its_fence;
+         state == ShownState::back_into_its_fence || state == ShownState::piloted;
 }
 
 struct Counted {

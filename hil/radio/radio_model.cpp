@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "skein/base/contains.hpp"
+#include "skein/base/stations.hpp"
 
 namespace skein::hil::radio {
 namespace {
@@ -15,13 +16,15 @@ std::size_t group_of(VehicleId node, const std::vector<std::vector<VehicleId>>& 
   return static_cast<std::size_t>(std::find_if(groups.begin(), groups.end(), has) - groups.begin());
 }
 
+bool is_ground(const Node& node) { return node.id == kGroundStation || is_station(node.id); }
+
 bool in_range(const RadioParams& params, const Node& from, const Node& to) {
   const Vec2 origin{0.0, 0.0};
   const auto place = [&origin](const Node& node) -> const Vec2* {
-    if (node.id == kGroundStation) return &origin;
+    if (is_ground(node)) return &origin;
     return node.position ? &*node.position : nullptr;
   };
-  const bool ground = from.id == kGroundStation || to.id == kGroundStation;
+  const bool ground = is_ground(from) || is_ground(to);
   const Vec2* a = place(from);
   const Vec2* b = place(to);
   if (a == nullptr || b == nullptr) return ground;

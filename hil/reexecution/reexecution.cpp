@@ -86,7 +86,7 @@ class Rerun {
     input(entry.time, [&] { node_->on_planning_result(result, given.now); });
   }
   void on(const recording::NoticeGiven& given, const Entry& entry) {
-    input(entry.time, [&] { node_->on_notice(given.notice); });
+    input(entry.time, [&] { node_->on_notice(given.notice, entry.time); });
   }
   void on(const recording::ConditionGiven& given, const Entry& entry) {
     input(entry.time, [&] { node_->on_condition(given.condition); });

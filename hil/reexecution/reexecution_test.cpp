@@ -99,7 +99,7 @@ class Vehicle {
     }
     for (; !notices.empty(); notices.pop_front()) {
       note(recording::NoticeGiven{notices.front(), now});
-      node_.on_notice(notices.front());
+      node_.on_notice(notices.front(), now);
       hand_out();
     }
     if (now.time_since_epoch() % std::chrono::seconds{20} == Duration{}) {

@@ -97,6 +97,7 @@ void Aircraft::start_program(const std::vector<Hazard>& hazards, Instant now) {
   const auto of_node = config(hazards);
   node_.emplace(of_node, local(now));
   setup_filter_.emplace(of_node.setup, what_.number());
+  station_ = {};
   shares_number_ = false;
   quiet_until_ = Instant::min();
   untold_.reset();
@@ -153,8 +154,22 @@ bool Aircraft::can_hold(const std::vector<Hazard>& hazards) const {
 
 void Aircraft::end_program(Instant now, const std::vector<Hazard>& hazards) {
   node_.reset();
+  piloted_ = false;
   ++life_;
   if (holds_orbit()) hold_orbit(now, hazards);
+}
+
+void Aircraft::taken_by_pilot(Instant now, const std::vector<Hazard>& hazards) {
+  piloted_ = true;
+  hold_orbit(now, hazards);
+  ++numbers_before_;
+  node().on_notice({local(now), true, {.news = AutopilotNews::mode_changed, .detail = "LOITER"}},
+                   local(now));
+}
+
+void Aircraft::given_back(Instant now) {
+  if (!std::exchange(piloted_, false)) return;
+  node().on_notice({local(now), false, {.news = AutopilotNews::flying}}, local(now));
 }
 
 void Aircraft::hold_orbit(Instant now, const std::vector<Hazard>& hazards) {
@@ -193,6 +208,7 @@ VehicleState Aircraft::local_state() const {
 }
 
 void Aircraft::follow(const mission::Guidance& guidance) {
+  if (piloted_) return;
   mission::Guidance numbered = guidance;
   if (auto* const plan = std::get_if<mission::FlightPlan>(&numbered)) {
     plan->number += numbers_before_;

@@ -11,6 +11,7 @@
 #include "skein/hal/flight_controller.hpp"
 #include "skein/hil/team_simulator.hpp"
 #include "skein/mission/concerns.hpp"
+#include "skein/mission/newest_station.hpp"
 #include "skein/mission/setup_filter.hpp"
 #include "skein/mission/vehicle_node.hpp"
 
@@ -39,11 +40,19 @@ class Aircraft {
   void end_program(Instant now, const std::vector<Hazard>& hazards);
   /// The program ends, and no flight controller holds: it goes on by what it has for as long as
   /// anybody looks.
-  void end_with_program() { node_.reset(); }
-  /// Is there an orbit here that is clear of the hazards?
+  void end_with_program() {
+    node_.reset();
+    piloted_ = false;
+  }
+  /// Is there an orbit here that is clear of the hazards? True of what comes to rest.
   [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
   /// A new node that remembers nothing, in what state the vehicle is.
   void start_program(const std::vector<Hazard>& hazards, Instant now);
+  /// Its pilot circles where it is; what the node gives is not flown.
+  void taken_by_pilot(Instant now, const std::vector<Hazard>& hazards);
+  /// The node flies it again, where it does not already.
+  void given_back(Instant now);
+  [[nodiscard]] bool piloted() const { return piloted_; }
   /// At once no more than that is left of its battery.
   void battery_falls(double percent) {
     if (!battery_) return;
@@ -55,8 +64,11 @@ class Aircraft {
     if (!is_plane()) sinks_from_ = from;
   }
 
-  /// Is that message anything to it? Precondition: running().
-  [[nodiscard]] bool heeds(const mission::Message& message, Instant now) {
+  /// Is that message anything to it? `start` is of the ground station that says it. Precondition:
+  /// running().
+  [[nodiscard]] bool heeds(const mission::Message& message, VehicleId sender, InstanceId start,
+                           Instant now) {
+    if (sender == kGroundStation && !station_.heeds(start)) return false;
     return mission::concerns(message, what_.number()) && setup_filter_->heeds(message, local(now));
   }
 
@@ -94,6 +106,11 @@ class Aircraft {
   void on_event(const mission::MissionEvent& event);
   [[nodiscard]] VehicleState local_state() const;
 
+  /// It follows flight plans, on its wings or in the air.
+  [[nodiscard]] bool holds_orbit() const {
+    return what_.body == Body::heading_dynamics || (!what_.flies_formation && plan() != nullptr);
+  }
+
   /// Follows what the node gives from now on.
   void follow(const mission::Guidance& guidance);
   /// One control period; false while there is nothing to follow.
@@ -119,9 +136,6 @@ class Aircraft {
   [[nodiscard]] std::optional<double> hold_curvature(const std::vector<Hazard>& hazards) const;
   [[nodiscard]] bool is_plane() const { return what_.body == Body::heading_dynamics; }
   [[nodiscard]] bool sinks(Instant now) const { return sinks_from_ && now >= *sinks_from_; }
-  [[nodiscard]] bool holds_orbit() const {
-    return what_.body == Body::heading_dynamics || (!what_.flies_formation && plan() != nullptr);
-  }
   [[nodiscard]] double battery_percent() const;
   void see_state(Instant now);
   void hold_orbit(Instant now, const std::vector<Hazard>& hazards);
@@ -134,6 +148,8 @@ class Aircraft {
   Instant quiet_until_ = Instant::min();  ///< by this vehicle's clock
   std::optional<mission::VehicleNode> node_;
   std::optional<mission::SetupFilter> setup_filter_;  ///< of the node
+  mission::NewestStation station_;                    ///< that the node heeds
+  bool piloted_ = false;
   bool shares_number_ = false;  ///< with another vehicle, as the node has told
   std::uint32_t life_ = 0;
   std::unique_ptr<hal::FlightController> body_;

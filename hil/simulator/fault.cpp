@@ -99,6 +99,12 @@ struct Sentence {
     return (what.who.empty() ? "its program" : "the program of " + names_of(what.who)) +
            " stands still";
   }
+  std::string operator()(const CommandTaken& /*what*/) const {
+    return "the other ground station takes the command";
+  }
+  std::string operator()(const PilotsTake& what) const {
+    return "its pilot takes " + (what.who.empty() ? "it" : names_of(what.who));
+  }
   std::string operator()(const ProgramSlow& what) const {
     return fmt::format("the program of {} stands still for {:.0f} % of the time",
                        names_of({what.node}), 100.0 * what.stopped_share);
@@ -165,6 +171,11 @@ Duration clock_offset(const std::vector<Fault>& faults, VehicleId node) {
   return {};
 }
 
+bool has_second_station(const std::vector<Fault>& faults) {
+  return std::ranges::any_of(
+      faults, [](const Fault& fault) { return std::holds_alternative<CommandTaken>(fault.what); });
+}
+
 bool is_of_other_release(const std::vector<Fault>& faults, VehicleId vehicle) {
   return std::ranges::any_of(faults, [vehicle](const Fault& fault) {
     const auto* other = std::get_if<OtherRelease>(&fault.what);
@@ -203,7 +214,9 @@ std::string names_of(const std::vector<VehicleId>& nodes) {
   std::string text;
   for (const VehicleId node : nodes) {
     text += text.empty() ? "" : ", ";
-    text += node == kGroundStation ? "ground" : fmt::format("U{}", node.value);
+    text += node == kGroundStation   ? "ground"
+            : node == kSecondStation ? "second ground"
+                                     : fmt::format("U{}", node.value);
   }
   return text;
 }

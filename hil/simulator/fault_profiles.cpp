@@ -155,7 +155,7 @@ struct Profile {
   std::string_view name;
   Raise sites = nullptr;  ///< null: not of missions with sites
   void (*formation)(Draw&) = nullptr;
-  bool alone = false;  ///< `mixed` does not draw it
+  double share = 0.45;  ///< of `mixed` missions with sites that have it
 
   [[nodiscard]] bool of(MissionKind kind) const {
     return kind == MissionKind::sites ? sites != nullptr : formation != nullptr;
@@ -198,11 +198,17 @@ constexpr Raise kStall = [](FaultParams& p) { raise(p.stalls, 4); };
 constexpr Raise kDouble = [](FaultParams& p) { raise(p.doubles, 1); };
 constexpr Raise kAirframe = [](FaultParams& p) { raise(p.airframes, 1); };
 constexpr Raise kCovered = [](FaultParams& p) { raise(p.covered, 1); };
+constexpr Raise kStations = [](FaultParams& p) { raise(p.taken_over, 3); };
+constexpr Raise kPilot = [](FaultParams& p) { raise(p.pilots, 3); };
 constexpr Raise kBattery = [](FaultParams& p) { raise(p.batteries, 2); };
 constexpr Raise kWind = [](FaultParams& p) { raise(p.wind_mps, 5.0); };
 constexpr Raise kNarrow = [](FaultParams& p) { p.narrow = true; };
 
-/// `mixed` draws from those above it, in this order.
+/// Of `mixed`, what more than one mission in so many has leaves too few vehicles, or too little
+/// air.
+constexpr double kRare = 0.15;
+
+/// `mixed` draws from them in this order.
 constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
                                Profile{"lossy", kLossy},
                                Profile{"vehicle", nullptr, lost_vehicle},
@@ -224,23 +230,31 @@ constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
                                Profile{"taken-back", kTakenBack},
                                Profile{"stall", kStall},
                                Profile{"covered", kCovered},
-                               Profile{"double", kDouble, nullptr, true},
-                               Profile{"airframe", kAirframe, nullptr, true},
-                               Profile{"battery", kBattery, nullptr, true},
-                               Profile{"wind", kWind, nullptr, true},
-                               Profile{"narrow", kNarrow, nullptr, true}};
+                               Profile{"double", kDouble, nullptr, kRare},
+                               Profile{"airframe", kAirframe, nullptr, kRare},
+                               Profile{"pilot", kPilot, nullptr, kRare},
+                               Profile{"stations", kStations, nullptr, kRare},
+                               Profile{"battery", kBattery, nullptr, kRare},
+                               Profile{"wind", kWind, nullptr, kRare},
+                               Profile{"narrow", kNarrow, nullptr, kRare}};
+
+/// Each of these takes a vehicle from the team, besides crashes.
+constexpr std::array<Raise, 4> kLosing{kClock, kDouble, kAirframe, kBattery};
 
 void mixed(FaultParams& params, std::uint64_t seed) {
   Random random{seed ^ kMixStream};
   const std::size_t crashes = params.crashes;
   std::size_t lost_besides = 0;
-  for (const Profile& profile : kProfiles) {
-    if (profile.sites == nullptr || profile.alone || !random.chance(0.45)) continue;
-    profile.sites(params);
-    if (profile.sites == kClock || profile.sites == kAirframe) ++lost_besides;
-  }
   // Two are lost at most: with fewer vehicles a leader whose site is beyond them can keep the last
   // one that another site needs.
+  for (const Profile& profile : kProfiles) {
+    if (profile.sites == nullptr || !random.chance(profile.share)) continue;
+    const bool loses = contains(kLosing, profile.sites);
+    if (loses && lost_besides == kLostMax) continue;
+    profile.sites(params);
+    if (loses) ++lost_besides;
+  }
+  params.batteries = std::min<std::size_t>(params.batteries, 1);
   params.crashes = std::max(crashes, std::min(params.crashes, kLostMax - lost_besides));
 }
 
@@ -571,6 +585,20 @@ void draw_further(Random& random, TeamMission& mission, const FaultParams& param
     Fault lost = draw_crash(random, params.phase, true);
     std::get<ProgramsEnd>(lost.what).with_airframe = true;
     mission.faults.push_back(std::move(lost));
+  }
+  for (std::size_t n = count(random, params.taken_over); n > 0; --n) {
+    const Instant at = Instant{} + between(random, seconds{5}, params.phase);
+    mission.faults.push_back({{.not_before = at}, {}, CommandTaken{}});
+  }
+  for (Fault& fault : mission.faults) {
+    auto* cut = params.taken_over > 0 ? std::get_if<radio::Cut>(&fault.what) : nullptr;
+    if (cut != nullptr && random.chance(0.3)) cut->groups.front().push_back(kSecondStation);
+  }
+  for (std::size_t n = count(random, params.pilots); n > 0; --n) {
+    Fault taken = draw_crash(random, params.phase, false);
+    taken.what = PilotsTake{{}, random.next()};
+    taken.lasts = between(random, seconds{2}, seconds{90});
+    mission.faults.push_back(std::move(taken));
   }
 }
 

@@ -212,6 +212,55 @@ TEST(Faults, TwoUnderOneNumberAreToldAndTakeUpNothing) {
   EXPECT_TRUE(is_told) << "the operator";
 }
 
+TEST(Faults, WhomAPilotTakesGivesItsTaskBackAndWorksAgainAfterwards) {
+  for (const Role role : {Role::leader, Role::member}) {
+    auto mission = drawn("none", 1);
+    mission.faults = {{{.not_before = at_seconds(1), .role = role, .after = 6s}, 30s, PilotsTake{}},
+                      {{.not_before = at_seconds(90)}, {}, Healing{}}};
+    const auto flown = fly(mission);
+    ASSERT_GE(flown.faults.size(), 2U) << flown.trace;
+    const FaultEvent& taken = flown.faults[0];
+    EXPECT_EQ(taken.kind, FaultEvent::Kind::piloted);
+    EXPECT_EQ(flown.faults[1].kind, FaultEvent::Kind::given_back);
+    EXPECT_EQ(flown.faults[1].time, taken.time + 30s);
+    bool is_told = false;
+    bool works_again = false;
+    for (const auto& e : flown.events) {
+      if (e.vehicle != taken.vehicle) continue;
+      using mission::EventKind;
+      is_told = is_told || e.kind() == EventKind::flight_warning;
+      const bool takes_up = e.kind() == EventKind::bid_sent || e.kind() == EventKind::confirmed ||
+                            e.kind() == EventKind::task_started ||
+                            e.kind() == EventKind::survey_started;
+      const bool piloted = e.time >= taken.time && e.time < taken.time + 30s;
+      EXPECT_FALSE(piloted && takes_up) << trace_line(e);
+      works_again = works_again || (takes_up && e.time >= taken.time + 30s);
+    }
+    EXPECT_TRUE(is_told) << "the operator";
+    EXPECT_TRUE(works_again) << flown.trace;
+    EXPECT_THAT(flown.run.broken, IsEmpty());
+    EXPECT_TRUE(flown.run.sites_done);
+  }
+}
+
+TEST(Faults, TheOtherGroundStationTakesTheCommandAndDecides) {
+  auto mission = drawn("none", 1);
+  mission.faults = {{{.not_before = at_seconds(10)}, {}, CommandTaken{}},
+                    {{.not_before = at_seconds(14)}, {}, ProgramsEnd{{kGroundStation}}},
+                    {{.not_before = at_seconds(90)}, {}, Healing{}}};
+  std::size_t decisions = 0;
+  TeamObserver watcher;
+  watcher.heard = [&](VehicleId, const mission::Message& message, Instant now) {
+    if (!std::holds_alternative<mission::Authorisation>(message)) return;
+    ++decisions;
+    EXPECT_GT(now, at_seconds(14)) << "the first one has decided";
+  };
+  const auto run = fly_judged(mission, limits_of(scenario("faults-8").expect), watcher);
+  EXPECT_THAT(run.broken, IsEmpty());
+  EXPECT_TRUE(run.sites_done);
+  EXPECT_GT(decisions, 0U);
+}
+
 TEST(Faults, AJoinerIsNotThereBefore) {
   auto mission = drawn("joining", 1);
   mission.faults = {{{.not_before = at_seconds(30)}, {}, LateStart{VehicleId{5}}}};
@@ -284,8 +333,10 @@ class Series : public testing::TestWithParam<const char*> {};
 
 TEST_P(Series, HoldsAndIsFinished) { EXPECT_EQ(broken(GetParam(), 30), ""); }
 INSTANTIATE_TEST_SUITE_P(Faults, Series,
-                         testing::Values("clocks", "covered", "crash", "hazards", "joining",
-                                         "lossy", "operator", "partition", "sites", "stall"));
+                         testing::Values("airframe", "battery", "clocks", "covered", "crash",
+                                         "double", "hazards", "joining", "lossy", "narrow",
+                                         "operator", "partition", "pilot", "sites", "stall",
+                                         "stations", "wind"));
 
 TEST(Faults, WhoCannotMissAHazardLeavesItForGood) {
   auto mission = drawn("none", 1);

@@ -28,6 +28,7 @@ Whom whom(const Fault& fault) {
   if (const auto* ended = std::get_if<ProgramsEnd>(&fault.what)) return {&ended->who, ended->pick};
   if (const auto* still = std::get_if<ProgramsStall>(&fault.what))
     return {&still->who, still->pick};
+  if (const auto* taken = std::get_if<PilotsTake>(&fault.what)) return {&taken->who, taken->pick};
   return {};
 }
 

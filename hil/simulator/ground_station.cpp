@@ -73,30 +73,67 @@ Result<void> check_script(const TeamMission& mission) {
   return {};
 }
 
-GroundStation::GroundStation(const TeamMission& mission, const TeamObserver& observer)
+GroundStation::GroundStation(const TeamMission& mission, const TeamObserver& observer,
+                             std::uint16_t number)
     : mission_{mission},
       observer_{observer},
       formation_{formation_of(mission)},
       clock_{clock_offset(mission.faults, kGroundStation)},
+      number_{number},
       starts_anew_{std::ranges::any_of(mission.faults, &ends_ground_for_a_time)} {}
 
 void GroundStation::start(Instant now) {
   node_.emplace(node_config(mission_), now + clock_);
   for (const Recorded& record : recorded_) node_->recall(record.message, record.sender, record.at);
+  start_ = next_start();
+  command_.emplace(configuration::CommandConfig{number_, "", number_ > 1}, start_, now + clock_);
+  if (!command_->is_commanding()) node_->watch(now + clock_);
   if (!mission_.formation) return;
   auto desk = open_desk(mission_, script_done_, *node_);
   SKEIN_ASSERT(desk.ok());
   desk_ = std::move(*desk);
 }
 
+/// Newer than all that it has been, and has heard of; of no other station.
+InstanceId GroundStation::next_start() const {
+  constexpr std::uint64_t kStations = 100;
+  const auto heard = command_ ? command_->newest() : std::nullopt;
+  const std::uint64_t newest = std::max(start_.value, heard.value_or(InstanceId{}).value);
+  return {(newest / kStations + 1) * kStations + number_};
+}
+
+bool GroundStation::take_command(Instant now) {
+  if (!node_ || command_->why_not_take(now + clock_)) return false;
+  take(now + clock_);
+  return true;
+}
+
+void GroundStation::take(Instant at) {
+  constexpr std::uint64_t kFar = 100'000;
+  start_ = next_start();
+  // Whom vehicles heed was not heard here.
+  if (!command_->unheeding(at).empty()) start_.value += kFar;
+  node_->take_command(start_, at);
+  node_->say(command_->take(start_, "", "", at));
+}
+
+/// Whoever may have it takes it where nobody has, and again where vehicles do not heed it.
+void GroundStation::keep_command(Instant at) {
+  if (number_ == 0) return;
+  const bool is_nobodys = command_->takes_by_itself(at) || command_->nobody_commands(at);
+  if (is_nobodys || !command_->unheeding(at).empty()) take(at);
+}
+
 void GroundStation::end() {
+  if (command_) start_ = std::max(start_, command_->newest().value_or(start_));  // on its disk
+  command_.reset();
   if (desk_) script_done_ += desk_->script_line();
   desk_.reset();
   node_.reset();
 }
 
 bool GroundStation::withdraw(const std::optional<SiteId>& site, Instant now) {
-  if (!node_) return false;
+  if (!commands()) return false;
   std::optional<SiteId> which = site;
   for (const auto& [id, entry] : node_->sites().sites()) {
     if (!site && entry.of_operator && entry.state < mission::SiteState::over) which = id;
@@ -107,7 +144,7 @@ bool GroundStation::withdraw(const std::optional<SiteId>& site, Instant now) {
 }
 
 bool GroundStation::take_back(const GrantTakenBack& what, Instant now) {
-  if (!node_) return false;
+  if (!commands()) return false;
   const auto is_due = [&](const mission::PendingAuthorisation& known) {
     return known.request.site == what.site && known.decision && known.decision->granted &&
            now + clock_ >= known.decision->decided_at + what.after;
@@ -117,14 +154,19 @@ bool GroundStation::take_back(const GrantTakenBack& what, Instant now) {
 }
 
 bool GroundStation::give(const RoutesOrdered& order, Instant now) {
-  if (!node_) return false;
+  if (!commands()) return false;
   mission::GroundRoutes::Routes routes = order.routes;
   for (auto& [id, timed] : routes) timed.start_time = now + clock_ + order.begin_in;
   return node_->give_routes(routes, now + clock_).ok();
 }
 
-void GroundStation::on_message(const mission::Message& message, VehicleId sender, Instant now) {
+void GroundStation::on_message(const mission::Message& message, VehicleId sender, InstanceId start,
+                               Instant now) {
+  using Heard = groundstation::CommandDesk::Heard;
   if (!node_) return;
+  const Heard heard = command_->on_message(message, sender, start, now + clock_);
+  if (heard == Heard::own || heard == Heard::word) return;
+  if (heard == Heard::superseded) node_->watch(now + clock_);
   record(message, sender, now + clock_);
   const bool taken = node_->on_message(message, sender, now + clock_);
   if (taken && observer_.ground_message) observer_.ground_message(message, sender, now + clock_);
@@ -137,6 +179,7 @@ void GroundStation::record(const mission::Message& message, VehicleId sender, In
 }
 
 void GroundStation::on_timeout(Instant now) {
+  if (node_) keep_command(now + clock_);
   if (node_) node_->on_timeout(now + clock_);
   if (desk_) desk_->on_timeout(now + clock_);
 }
@@ -148,11 +191,15 @@ void GroundStation::on_aircraft(mission::Aircraft aircraft, Instant now) {
 }
 
 std::optional<mission::Message> GroundStation::poll_message(Instant now) {
+  if (!node_) return std::nullopt;
   std::optional<mission::Message> message;
   do {
-    message = node_ ? node_->poll_message() : std::nullopt;
-  } while (message &&
+    message = node_->poll_message();
+  } while (message && number_ == 0 &&
            std::holds_alternative<mission::MissionEvent>(*message));  // read on the ground
+  if (!message) {
+    if (auto word = command_->poll_word(now + clock_)) message = *std::move(word);
+  }
   if (!message) return message;
   record(*message, kGroundStation, now + clock_);
   if (observer_.ground_message) observer_.ground_message(*message, kGroundStation, now + clock_);

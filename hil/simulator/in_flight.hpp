@@ -29,6 +29,7 @@ struct Parcel {
   std::uint32_t life = 0;  ///< of the receiver, where it is for that one only
   std::shared_ptr<const Content> what;
   bool only_wakes = false;
+  InstanceId start = {};  ///< of the ground station that says it
   friend bool operator<(const Parcel& a, const Parcel& b) {
     return std::tie(a.at, a.order) < std::tie(b.at, b.order);
   }

@@ -34,7 +34,9 @@ TaskId task_of(SiteId site, const Json& task) {
 
 console::PictureParams params_of(const TeamMission& team) {
   console::PictureParams params;
-  for (const auto& v : team.vehicles) params.expected.push_back(v.spec.id);
+  for (const auto& v : team.vehicles) {
+    if (!v.flies_as) params.expected.push_back(v.spec.id);
+  }
   return params;
 }
 
@@ -63,6 +65,7 @@ PictureWatch::PictureWatch(const TeamMission& team, Lateness late)
       picture_{params_of(team)} {
   for (const auto& v : team.vehicles) {
     own_[v.spec.id].clock = clock_offset(team.faults, v.spec.id);
+    if (v.flies_as) used_twice_.insert(*v.flies_as);
   }
 }
 
@@ -252,6 +255,7 @@ void PictureWatch::judge_vehicles(Instant now, const mission::GroundNode& node) 
            fmt::format("{} is {} in the table, and {} on the page", id.value, state_in(table, id),
                        state),
            now);
+    if (used_twice_.contains(id)) continue;
     expect(v["silent"].get<bool>() == (state == "silent"), "silent",
            fmt::format("{} is silent, and not", id.value), now);
     expect((state == "silent") == is_silent(own, now), "silence",
@@ -316,7 +320,7 @@ void PictureWatch::judge_sites(Instant now, const mission::GroundNode& node) {
       // Whether it was flown before is not known; who is to fly it anew is shown all the same.
       if (held || task["state"] == "unknown") owners[shown] = who;
       const Own& own = own_[who];
-      if (!held || !is_fresh(own, now)) continue;
+      if (!held || !is_fresh(own, now) || used_twice_.contains(who)) continue;
       expect(lately(own, [&](const Moment& m) { return m.task == shown; }), "owner",
              fmt::format("{} is shown with {}, and has '{}'", shown, who.value, own.now()->task),
              now, late_.word);
@@ -327,7 +331,7 @@ void PictureWatch::judge_sites(Instant now, const mission::GroundNode& node) {
     const VehicleId who{v["id"].get<std::uint16_t>()};
     const TaskId task = task_of(SiteId{v["task"]["site"].get<std::uint16_t>()}, v["task"]);
     const Own& own = own_[who];
-    if (task.kind == TaskKind::survey || !is_fresh(own, now) ||
+    if (task.kind == TaskKind::survey || !is_fresh(own, now) || used_twice_.contains(who) ||
         node.sites().is_withdrawn(task.site))
       continue;
     const auto shown = owners.find(to_string(task));
@@ -349,7 +353,7 @@ void PictureWatch::judge_coalitions(Instant now, const mission::GroundNode& node
     expect(state != "closed" || known.closed, "coalition closed", name, now);
     expect(state != "failed" || known.cancelled, "coalition failed", name, now);
     expect(state != "formed" || known.formed, "coalition formed", name, now);
-    if (!known.heard) continue;
+    if (!known.heard || used_twice_.contains(id->leader)) continue;
     std::vector<VehicleId> members;
     for (const Json& member : shown["members"]) members.push_back({member.get<std::uint16_t>()});
     const bool so = std::ranges::any_of(known.said, [&](const Said& said) {

@@ -119,6 +119,7 @@ class PictureWatch {
   console::Picture picture_;
   std::map<VehicleId, Own> own_;
   std::map<VehicleId, Facts> facts_;
+  std::set<VehicleId> used_twice_;  ///< numbers: what is shown is of one or the other
   std::map<coalition::CoalitionId, Coalition> coalitions_;
   std::set<SiteId> surveyed_;
   std::set<SiteId> done_;

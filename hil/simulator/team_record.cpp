@@ -53,11 +53,21 @@ TeamObserver TeamRecorder::observer() {
       if (watcher_.fault) watcher_.fault(event);
       return;
     }
-    if (event.kind == FaultEvent::Kind::stands_still) {
+    const bool piloted = event.kind == FaultEvent::Kind::piloted;
+    if (piloted) {
+      record_.left_alone.push_back({event.vehicle, event.time, event.time + event.lasts});
+    }
+    if (event.kind == FaultEvent::Kind::stands_still || piloted) {
       record_.stood_still.push_back({event.vehicle, event.time, event.time + event.lasts});
     }
-    if (event.kind == FaultEvent::Kind::gone || event.kind == FaultEvent::Kind::ended)
+    if (event.kind == FaultEvent::Kind::gone || event.kind == FaultEvent::Kind::ended) {
       record_.agent_ends.push_back({event.vehicle, event.time, {}});
+      for (auto* times : {&record_.left_alone, &record_.stood_still}) {
+        for (checks::LeftAlone& alone : *times) {
+          if (alone.vehicle == event.vehicle) alone.until = std::min(alone.until, event.time);
+        }
+      }
+    }
     if (event.kind == FaultEvent::Kind::restarted) {
       const auto end = std::find_if(record_.agent_ends.rbegin(), record_.agent_ends.rend(),
                                     [&](const auto& e) { return e.vehicle == event.vehicle; });

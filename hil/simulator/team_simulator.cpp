@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <deque>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -17,15 +18,12 @@
 #include <vector>
 
 #include "aircraft.hpp"
+#include "ether.hpp"
 #include "ground_station.hpp"
-#include "in_flight.hpp"
 #include "multirotor_body.hpp"
 #include "site_finder.hpp"
 #include "skein/base/assert.hpp"
-#include "skein/codec/codec.hpp"
 #include "skein/hil/fault_timeline.hpp"
-#include "skein/hil/radio/mesh.hpp"
-#include "skein/hil/radio/positions.hpp"
 #include "skein/mission/may_say.hpp"
 #include "skein/wording/wording.hpp"
 
@@ -48,7 +46,6 @@ constexpr Duration kAtRest = std::chrono::seconds{2};
 /// Or, where it is not: nothing comes any more. Longer than the ground station takes to know that a
 /// vehicle is lost, and to give an order again.
 constexpr Duration kIdle = std::chrono::seconds{30};
-constexpr double kAnywhere_m = std::numeric_limits<double>::infinity();
 /// Slower, a reference stands still.
 constexpr double kStill_mps = 1e-3;
 constexpr std::uint64_t kGustStream = 0x666f726d67757301;
@@ -79,55 +76,35 @@ bool is_operators(const Fault& fault) {
 }
 
 /// What no program of the team reads: people do, and nobody watches here.
-bool is_for_watchers(const mission::Message& message, bool plans_are_read) {
+bool is_for_watchers(const mission::Message& message, bool plans_are_read, bool health_is_read) {
   return (std::holds_alternative<mission::PlanReport>(message) && !plans_are_read) ||
-         std::holds_alternative<mission::Health>(message);
+         (std::holds_alternative<mission::Health>(message) && !health_is_read);
 }
-
-/// As sent alone on the air, with the headers of IP, UDP and seal.
-std::size_t bytes_of(const mission::Message& message) {
-  constexpr std::size_t kHeaders = 60;
-  return codec::encode(message).value_or(codec::Bytes{}).size() + kHeaders;
-}
-
-/// A node of the simulated network.
-struct Station {
-  radio::Node node;
-  VehicleId number;  ///< that it speaks under
-  bool on = true;    ///< its program runs
-};
 
 class Team {
  public:
   Team(const TeamMission& mission, const TeamObserver& observer)
       : mission_{mission},
         observer_{observer},
-        clocks_agree_{std::ranges::none_of(
-            mission.faults,
-            [](const Fault& f) { return std::holds_alternative<ClockOff>(f.what); })},
-        wakes_say_nothing_{!mission.radio.bytes_per_s},
         plans_are_read_{reads_plans(mission)},
-        radio_{mission.radio, mission.seed},
-        positions_{mission.vehicles.size() + 1},
-        mesh_{mission.radio.mesh ? std::optional<radio::Mesh>{*mission.radio.mesh} : std::nullopt},
+        ether_{mission},
         timeline_{mission.faults},
         healing_{healing_of(mission.faults)},
         awaits_routes_{std::ranges::any_of(
             mission.faults,
             [](const Fault& f) { return std::holds_alternative<RoutesOrdered>(f.what); })},
-        finder_{mission},
-        ground_{mission, observer} {
+        finder_{mission} {
+    const bool has_second = has_second_station(mission.faults);
+    grounds_.emplace_back(mission, observer, has_second ? 1 : 0);
+    if (has_second) grounds_.emplace_back(mission, unseen_, 2);
     Random gusts{mission.seed ^ kGustStream};
-    for (const auto& v : mission.vehicles) {
-      vehicles_.emplace_back(mission, v, gusts.fork());
-      nodes_.push_back({{v.spec.id, Vec2{0.0, 0.0}}, v.number(), false});
-    }
-    nodes_.push_back({{kGroundStation, std::nullopt}, kGroundStation, true});
-    channels_.resize(nodes_.size());
-    restart_at_.resize(nodes_.size());
-    gone_at_.resize(nodes_.size());
-    stands_until_.resize(nodes_.size(), Instant::min());
-    ground_.start(Instant{});
+    for (const auto& v : mission.vehicles) vehicles_.emplace_back(mission, v, gusts.fork());
+    const std::size_t programs = ether_.stations().size();
+    restart_at_.resize(programs);
+    gone_at_.resize(programs);
+    stands_until_.resize(programs, Instant::min());
+    give_back_at_.resize(vehicles_.size(), Instant::max());
+    for (std::size_t i = 0; i < grounds_.size(); ++i) start_ground(i, Instant{});
     for (const auto& h : mission.hazards) {
       if (h.known_from <= Instant{}) hazards_.push_back(h.hazard);
     }
@@ -141,23 +118,24 @@ class Team {
     std::optional<Instant> stop_at;
     for (Instant now{}; now <= stop_at.value_or(last); now += kControlPeriod) {
       if (!mission_.faults.empty()) play_faults(now);
-      for (const radio::Flood& by : radio_.interference().floods) flood(by, now);
+      ether_.step(now);
       deliver(now);
       control(now);
       if (due(now, kSensorPeriod)) sense(now);
-      if (mesh_ && due(now, kNodePeriod)) move_mesh(now);
+      if (due(now, kNodePeriod)) ether_.route(now);
       step_nodes(now);
       if (due(now, kNodePeriod)) step_ground(now);
       if (observer_.moment && due(now, kNodePeriod)) show_moment(now);
       if (mission_.formation) watch_formation(now);
       result_.ended_at = now;
       if (!stop_at && sites_over_.size() == mission_.sites.size() && formation_over(now) &&
-          (!awaits_routes_ || ground_.routes_over()) && landed_if_so(now)) {
+          (!awaits_routes_ || std::ranges::any_of(grounds_, &GroundStation::routes_over)) &&
+          landed_if_so(now)) {
         const Duration afterwards = mission_.sites.empty() ? Duration{} : kAfterwards;
         stop_at = std::min(last, std::max(now, healing_.value_or(Instant{})) + afterwards);
       }
     }
-    result_.ground_gone = gone_at_.back().has_value();
+    result_.ground_gone = gone_at_[ether_.ground()].has_value();
     result_.sites_done = sites_done_.size();
     for (std::size_t i = 0; i < vehicles_.size(); ++i) sum_up(i);
     return result_;
@@ -170,15 +148,13 @@ class Team {
     static constexpr std::array kOrders{mission::CommandKind::return_home,
                                         mission::CommandKind::land};
     if (orders_to_land_ < kOrders.size() &&
-        ground_.command(kGroundStation, kOrders.at(orders_to_land_), now)) {
+        commander().command(kGroundStation, kOrders.at(orders_to_land_), now)) {
       ++orders_to_land_;
     }
     return std::ranges::none_of(vehicles_, [](const Aircraft& v) {
       return v.running() && v.activity() != mission::Activity::landed;
     });
   }
-
-  [[nodiscard]] std::size_t ground_index() const { return vehicles_.size(); }
 
   // --- faults ---
 
@@ -193,18 +169,19 @@ class Team {
         [&](const Fault& fault, const std::vector<VehicleId>& who) {
           return begin(fault, who, now);
         });
-    if (timeline_.radio_changed()) radio_.interfere(timeline_.interference());
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    give_back(now);
+    if (timeline_.radio_changed()) ether_.interfere(timeline_.interference());
+    for (std::size_t i = 0; i < restart_at_.size(); ++i) {
       if (!restart_at_[i] || now < *restart_at_[i]) continue;
       restart_at_[i].reset();
-      if (i == ground_index()) {
-        ground_.start(now);
+      if (i == ether_.ground()) {
+        start_ground(0, now);
         result_.ground_warning.reset();
       } else {
         vehicles_[i].start_program(hazards_, now);
       }
-      nodes_[i].on = true;
-      tell(now, FaultEvent::Kind::restarted, nodes_[i].node.id);
+      ether_.turn(i, true);
+      tell(now, FaultEvent::Kind::restarted, ether_.stations()[i].node.id);
     }
   }
 
@@ -216,32 +193,27 @@ class Team {
     return some;
   }
 
-  [[nodiscard]] std::size_t index_of(VehicleId id) const {
-    const auto found = std::find_if(nodes_.begin(), nodes_.end(),
-                                    [id](const Station& s) { return s.node.id == id; });
-    SKEIN_ASSERT(found != nodes_.end());
-    return static_cast<std::size_t>(found - nodes_.begin());
-  }
-
   bool begin(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
     if (std::holds_alternative<ProgramsEnd>(fault.what)) return end_programs(fault, who, now);
     if (std::holds_alternative<ProgramsStall>(fault.what)) return stall_programs(fault, who, now);
+    if (std::holds_alternative<PilotsTake>(fault.what)) return pilots_take(fault, who, now);
+    if (std::holds_alternative<CommandTaken>(fault.what)) return take_command(now);
     if (const auto* late = std::get_if<LateStart>(&fault.what)) {
-      take_off(index_of(late->vehicle), now);
-      const auto number = vehicles_[index_of(late->vehicle)].what().flies_as;
+      take_off(ether_.index_of(late->vehicle), now);
+      const auto number = vehicles_[ether_.index_of(late->vehicle)].what().flies_as;
       tell(now, FaultEvent::Kind::joined, late->vehicle,
            number ? "under the number of " + names_of({*number}) : "");
       return true;
     }
     if (const auto* falls = std::get_if<BatteryFalls>(&fault.what)) {
-      vehicles_[index_of(falls->vehicle)].battery_falls(falls->percent);
+      vehicles_[ether_.index_of(falls->vehicle)].battery_falls(falls->percent);
       return true;
     }
     if (const auto* seen = std::get_if<PlaceSeen>(&fault.what)) {
       see(*seen, now);
       return true;
     }
-    if (is_operators(fault)) return !stands_still(ground_index(), now) && operate(fault, now);
+    if (is_operators(fault)) return !stands_still(ether_.ground(), now) && operate(fault, now);
     const auto* worse = std::get_if<radio::Disturbance>(&fault.what);
     if (std::holds_alternative<radio::Cut>(fault.what) || (worse != nullptr && worse->loss > 0.0)) {
       tell(now, FaultEvent::Kind::radio, kGroundStation, describe(fault));
@@ -256,13 +228,13 @@ class Team {
 
   bool operate(const Fault& fault, Instant now) {
     if (const auto* gone = std::get_if<SiteWithdrawal>(&fault.what)) {
-      const bool done = ground_.withdraw(gone->site, now);
-      if (done) drain_ground(now);
+      const bool done = commander().withdraw(gone->site, now);
+      if (done) drain_grounds(now);
       return done;
     }
     if (const auto* back = std::get_if<GrantTakenBack>(&fault.what)) {
-      const bool done = ground_.take_back(*back, now);
-      if (done) drain_ground(now);
+      const bool done = commander().take_back(*back, now);
+      if (done) drain_grounds(now);
       return done;
     }
     if (const auto* order = std::get_if<Ordered>(&fault.what)) {
@@ -270,7 +242,7 @@ class Team {
       tell(now, FaultEvent::Kind::ordered, order->vehicle, describe(fault));
       return true;
     }
-    if (!ground_.give(std::get<RoutesOrdered>(fault.what), now)) return false;
+    if (!commander().give(std::get<RoutesOrdered>(fault.what), now)) return false;
     tell(now, FaultEvent::Kind::ordered, kGroundStation, describe(fault));
     return true;
   }
@@ -278,9 +250,11 @@ class Team {
   /// Where the ground station refuses to order all, since a number is used twice, the operator
   /// orders the others one by one.
   void order_so(const Ordered& order, Instant now) {
-    if (ground_.command(order.vehicle, order.kind, now) || order.vehicle != kGroundStation) return;
+    GroundStation& operators = commander();
+    if (operators.command(order.vehicle, order.kind, now) || order.vehicle != kGroundStation)
+      return;
     for (const Aircraft& v : vehicles_) {
-      if (!v.what().flies_as) (void)ground_.command(v.spec().id, order.kind, now);
+      if (!v.what().flies_as) (void)operators.command(v.spec().id, order.kind, now);
     }
   }
 
@@ -288,23 +262,45 @@ class Team {
     mission::Detection detection;
     detection.position = what.place;
     for (const VehicleId id : what.by) {
-      hand_over(now, index_of(id), std::make_shared<const Content>(mission::Message{detection}));
+      hand_over(now, ether_.index_of(id),
+                std::make_shared<const Content>(mission::Message{detection}));
       detection.position.x() += 8.0;
     }
+  }
+
+  void start_ground(std::size_t i, Instant now) {
+    grounds_[i].start(now);
+    ether_.start(ether_.ground() + i, grounds_[i].start_number());
+  }
+
+  /// Whose operators order what is ordered: the ground station that has the command.
+  [[nodiscard]] GroundStation& commander() {
+    const auto found = std::ranges::find_if(grounds_, &GroundStation::commands);
+    return found == grounds_.end() ? grounds_.front() : *found;
+  }
+
+  bool take_command(Instant now) {
+    const auto takes = [now](GroundStation& ground) {
+      return !ground.commands() && ground.take_command(now);
+    };
+    if (std::ranges::none_of(grounds_, takes)) return false;
+    tell(now, FaultEvent::Kind::ordered, kGroundStation, "the other takes the command");
+    drain_grounds(now);
+    return true;
   }
 
   bool end_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
     const auto& what = std::get<ProgramsEnd>(fault.what);
     for (const VehicleId id : who) {
-      const std::size_t i = index_of(id);
+      const std::size_t i = ether_.index_of(id);
       // The flight controller knows of no hazards: where somebody is chosen, the orbit must happen
       // to keep its distance.
       const bool holds = fault.when.role && !what.with_airframe;
       if (holds && !vehicles_[i].can_hold(hazards_)) return false;
     }
     for (const VehicleId id : who) {
-      end_program(index_of(id), fault.lasts, now, what.with_airframe);
-      if (what.sinks_after) vehicles_[index_of(id)].sink(now + *what.sinks_after);
+      end_program(ether_.index_of(id), fault.lasts, now, what.with_airframe);
+      if (what.sinks_after) vehicles_[ether_.index_of(id)].sink(now + *what.sinks_after);
     }
     return true;
   }
@@ -317,8 +313,8 @@ class Team {
   bool stall_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
     const Duration lasts = fault.lasts.value_or(Duration{});
     for (const VehicleId id : who) {
-      const std::size_t i = index_of(id);
-      if (!nodes_[i].on) continue;
+      const std::size_t i = ether_.index_of(id);
+      if (!ether_.stations()[i].on) continue;
       stands_until_[i] = std::max(stands_until_[i], now + lasts);
       tell(now, FaultEvent::Kind::stands_still, id, fmt::format("for {:.2f} s", to_seconds(lasts)),
            lasts);
@@ -326,12 +322,44 @@ class Team {
     return true;
   }
 
+  /// Whoever it is must have an orbit that keeps its distance, as with end_programs().
+  bool pilots_take(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
+    const auto can = [this, now](VehicleId id) {
+      const std::size_t i = ether_.index_of(id);
+      const Aircraft& v = vehicles_[i];
+      const bool has_word = v.running() && !v.piloted() && !stands_still(i, now);
+      return has_word && v.holds_orbit() && v.can_hold(hazards_);
+    };
+    const Duration lasts = fault.lasts.value_or(Instant::max() - now);
+    if (!std::ranges::all_of(who, can)) return false;
+    for (const VehicleId id : who) {
+      const std::size_t i = ether_.index_of(id);
+      tell(now, FaultEvent::Kind::piloted, id, {}, lasts);
+      vehicles_[i].taken_by_pilot(now, hazards_);
+      tell_plan(vehicles_[i], now);
+      drain(i, now);
+      give_back_at_[i] = now + lasts;
+    }
+    return true;
+  }
+
+  void give_back(Instant now) {
+    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+      if (now < give_back_at_[i] || stands_still(i, now)) continue;
+      give_back_at_[i] = Instant::max();
+      if (!vehicles_[i].piloted()) continue;  // another program has it since
+      tell(now, FaultEvent::Kind::given_back, vehicles_[i].spec().id);
+      vehicles_[i].given_back(now);
+      drain(i, now);
+    }
+  }
+
   void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now,
                    bool with_airframe) {
-    if (!nodes_[i].on) return;  // down already
+    if (!ether_.stations()[i].on) return;  // down already
     stands_until_[i] = Instant::min();
-    if (i == ground_index()) {
-      ground_.end();
+    if (i == ether_.ground()) {
+      grounds_.front().end();
     } else {
       count_errors(i);
       finder_.on_agent_end(i);
@@ -342,14 +370,14 @@ class Team {
         tell_plan(vehicles_[i], now);
       }
     }
-    nodes_[i].on = false;
+    ether_.turn(i, false);
     if (down_for) {
       restart_at_[i] = now + *down_for;
     } else {
       gone_at_[i] = now;
     }
-    tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone, nodes_[i].node.id,
-         with_airframe ? "with its airframe" : "");
+    tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone,
+         ether_.stations()[i].node.id, with_airframe ? "with its airframe" : "");
   }
 
   void tell_plan(const Aircraft& v, Instant now) {
@@ -358,107 +386,54 @@ class Team {
 
   void take_off(std::size_t i, Instant now) {
     vehicles_[i].take_off(now);
-    nodes_[i].on = true;
+    ether_.turn(i, true);
     see_position(i);
   }
 
   void see_position(std::size_t i) {
-    const Vec2 position = vehicles_[i].state().position().horizontal();
-    nodes_[i].node.position = position;
-    positions_.set(i, position);
+    ether_.place(i, vehicles_[i].state().position().horizontal());
   }
 
   // --- the radio ---
 
   void broadcast(std::size_t from, mission::Message message, Instant now) {
     if (observer_.message) observer_.message(message);
-    const std::size_t bytes = radio_.params().bytes_per_s ? bytes_of(message) : 0;
-    const auto what = std::make_shared<const Content>(std::move(message));
-    const auto* telemetry = std::get_if<mission::Telemetry>(&std::get<mission::Message>(*what));
-    // The ground station is the last node, and the first to hear.
-    if (from != ground_index()) {
-      post(from, ground_index(), hops_between(from, ground_index()), what, bytes, false, now);
-    }
-    // Between most vehicles their distance alone decides, and that is looked at here.
-    const bool anywhere = mesh_ || radio_.interference().healed || from == ground_index();
-    const bool near_hears = !anywhere && radio_.interference().cuts.empty();
-    positions_.find_near(from, anywhere ? kAnywhere_m : radio_.params().range_m, near_);
-    for (const std::size_t to : near_) {
-      if (to == from || to == ground_index()) continue;
-      const bool only_wakes = telemetry != nullptr && !vehicles_[to].watches(*telemetry);
-      post(from, to, near_hears ? 1 : hops_between(from, to), what, bytes, only_wakes, now);
-    }
-  }
-
-  int hops_between(std::size_t from, std::size_t to) const {
-    if (mesh_) return mesh_->hops(from, to);
-    return radio_.hears(nodes_[from].node, nodes_[to].node) ? 1 : 0;
-  }
-
-  /// What a vehicle that floods says in a step takes its part of every channel in reach.
-  void flood(const radio::Flood& by, Instant now) {
-    if (!radio_.params().bytes_per_s) return;
-    const std::size_t from = index_of(by.vehicle);
-    const auto datagrams =
-        static_cast<int>(std::lround(radio::Flood::kDatagrams_per_s * to_seconds(kControlPeriod)));
-    for (std::size_t to = 0; to < nodes_.size(); ++to) {
-      if (to == from || !nodes_[from].on || !nodes_[to].on) continue;
-      for (int i = 0; i < datagrams; ++i) {
-        (void)radio_.carry(hops_between(from, to), channels_[to], by.vehicle, radio::Flood::kBytes,
-                           now);
-      }
-    }
-  }
-
-  void post(std::size_t from, std::size_t to, int hops, const std::shared_ptr<const Content>& what,
-            std::size_t bytes, bool only_wakes, Instant now) {
-    if (hops == 0 || !nodes_[to].on) return;
-    const VehicleId sender = nodes_[from].number;
-    for (const Duration delay : radio_.carry(hops, channels_[to], sender, bytes, now)) {
-      if (only_wakes && clocks_agree_) {
-        air_.post_wake(now + delay, to, sender, what);
-      } else {
-        air_.post({now + delay, 0, to, sender, 0, what});
-      }
-    }
+    ether_.broadcast(from, std::move(message), now,
+                     [this](std::size_t to, const mission::Telemetry& told) {
+                       return vehicles_[to].watches(told);
+                     });
   }
 
   // --- the mission ---
 
   void deliver(Instant now) {
-    while (auto parcel = air_.pop_due(now)) {
+    while (auto parcel = ether_.in_flight().pop_due(now)) {
       if (stands_still(parcel->to, now)) {
         parcel->at = stands_until_[parcel->to];
-        air_.post(std::move(*parcel));
+        ether_.in_flight().post(std::move(*parcel));
         continue;
       }
-      if (parcel->to == ground_index()) {
-        if (!ground_.running()) continue;
-        ground_.on_message(std::get<mission::Message>(*parcel->what), parcel->from, now);
-        drain_ground(now);
+      if (parcel->to >= ether_.ground()) {
+        const std::size_t i = parcel->to - ether_.ground();
+        if (!grounds_[i].running()) continue;
+        grounds_[i].on_message(std::get<mission::Message>(*parcel->what), parcel->from,
+                               parcel->start, now);
+        drain_ground(i, now);
         continue;
       }
       Aircraft& v = vehicles_[parcel->to];
-      if (!v.running() || (parcel->only_wakes && wakes_say_nothing_ && v.is_quiet(now))) continue;
+      if (!v.running() || (parcel->only_wakes && ether_.wakes_say_nothing() && v.is_quiet(now)))
+        continue;
       if (const auto* planned = std::get_if<mission::PlanningResult>(parcel->what.get())) {
         if (parcel->life == v.life()) v.node().on_planning_result(*planned, v.local(now));
       } else {
         const auto& message = std::get<mission::Message>(*parcel->what);
-        if (!v.heeds(message, now)) continue;
+        if (!v.heeds(message, parcel->from, parcel->start, now)) continue;
         if (observer_.heard) observer_.heard(v.spec().id, message, now);
         v.node().on_message(message, parcel->from, v.local(now));
       }
-      if (drain(parcel->to, now)) air_.on_moved(*parcel);
+      if (drain(parcel->to, now)) ether_.in_flight().on_moved(*parcel);
     }
-  }
-
-  void move_mesh(Instant now) {
-    places_.clear();
-    for (const Station& station : nodes_) {
-      places_.push_back(station.node);
-      places_.back().on = station.on;
-    }
-    mesh_->move(radio_.params(), radio_.interference(), places_, now);
   }
 
   void control(Instant now) {
@@ -508,23 +483,26 @@ class Team {
   }
 
   void step_ground(Instant now) {
-    if (!ground_.running() || stands_still(ground_index(), now)) return;
-    if (!mission_.aircraft.empty() && due(now, kAircraftPeriod)) {
-      for (const auto& one : mission_.aircraft) {
-        if (const auto there = place_of(one, now)) ground_.on_aircraft(*there, now);
+    for (std::size_t i = 0; i < grounds_.size(); ++i) {
+      GroundStation& ground = grounds_[i];
+      if (!ground.running() || stands_still(ether_.ground() + i, now)) continue;
+      if (!mission_.aircraft.empty() && due(now, kAircraftPeriod)) {
+        for (const auto& one : mission_.aircraft) {
+          if (const auto there = place_of(one, now)) ground.on_aircraft(*there, now);
+        }
       }
+      ground.on_timeout(now);
+      drain_ground(i, now);
     }
-    ground_.on_timeout(now);
-    drain_ground(now);
   }
 
   void show_moment(Instant now) const {
-    if (!ground_.running() || stands_still(ground_index(), now)) return;
+    if (!grounds_.front().running() || stands_still(ether_.ground(), now)) return;
     std::vector<OwnWord> words;
     for (const Aircraft& v : vehicles_) {
       words.push_back({v.spec().id, v.running() ? std::optional{v.telemetry()} : std::nullopt});
     }
-    observer_.moment(now, ground_.node(), words);
+    observer_.moment(now, grounds_.front().node(), words);
   }
 
   /// True where there was anything.
@@ -533,7 +511,7 @@ class Team {
     bool any = false;
     while (auto message = v.node().poll_message()) {
       any = true;
-      if (is_for_watchers(*message, plans_are_read_)) continue;
+      if (is_for_watchers(*message, plans_are_read_, grounds_.size() > 1)) continue;
       if (!std::holds_alternative<mission::Telemetry>(*message)) ++result_.messages;
       broadcast(i, std::move(*message), now);
     }
@@ -544,15 +522,15 @@ class Team {
     while (const auto guidance = v.node().poll_guidance()) {
       any = true;
       v.follow(*guidance);
-      if (std::holds_alternative<mission::FlightPlan>(*guidance)) tell_plan(v, now);
+      if (!v.piloted() && std::holds_alternative<mission::FlightPlan>(*guidance)) tell_plan(v, now);
     }
     while (const auto request = v.node().poll_planning_request()) {
       any = true;
       const mission::PlanningResult planned{request->round,
                                             planning::allocate(request->params, request->problem),
                                             mission_.allocation_takes};
-      air_.post({now + mission_.allocation_takes, 0, i, v.spec().id, v.life(),
-                 std::make_shared<const Content>(planned)});
+      ether_.in_flight().post({now + mission_.allocation_takes, 0, i, v.spec().id, v.life(),
+                               std::make_shared<const Content>(planned)});
     }
     v.on_polled(now);
     return any;
@@ -566,7 +544,7 @@ class Team {
     finder_.on_event(event);
     // What it knows of, the operator tells another.
     const bool leaves = took_part || event.kind() == EventKind::setup_differs;
-    if (leaves && !v.takes_part() && radio_.interference().healed) {
+    if (leaves && !v.takes_part() && ether_.healed()) {
       hand_over_sites(finder_.report_all(vehicles_), event.time, true);
     }
     if (event.kind() == EventKind::site_done && is_of_mission(event.task.site))
@@ -585,11 +563,19 @@ class Team {
     if (is_of_mission(site)) sites_over_.insert(site);
   }
 
-  void drain_ground(Instant now) {
-    while (auto message = ground_.poll_message(now)) {
-      broadcast(ground_index(), std::move(*message), now);
+  void drain_grounds(Instant now) {
+    for (std::size_t i = 0; i < grounds_.size(); ++i) drain_ground(i, now);
+  }
+
+  /// What one that watches is told of was told already.
+  void drain_ground(std::size_t i, Instant now) {
+    GroundStation& ground = grounds_[i];
+    if (ground.running()) ether_.start(ether_.ground() + i, ground.start_number());
+    while (auto message = ground.poll_message(now)) {
+      broadcast(ether_.ground() + i, std::move(*message), now);
     }
-    while (const auto event = ground_.poll_event()) {
+    while (const auto event = ground.poll_event()) {
+      if (!ground.commands()) continue;
       if (observer_.event) observer_.event(*event);
       const auto kind = event->kind();
       if (kind == mission::EventKind::site_withdrawn ||
@@ -639,7 +625,7 @@ class Team {
 
   /// From a sensor on board: no radio lies between.
   void hand_over(Instant now, std::size_t to, const std::shared_ptr<const Content>& what) {
-    air_.post({now, 0, to, mission::kSensors, 0, what});
+    ether_.in_flight().post({now, 0, to, mission::kSensors, 0, what});
   }
 
   void count_errors(std::size_t i) {
@@ -668,32 +654,23 @@ class Team {
 
   const TeamMission& mission_;
   const TeamObserver& observer_;
-  /// Then the telemetry of others does no more than wake a vehicle. Else the time in it counts.
-  bool clocks_agree_;
-  /// Where the air has its price, vehicles pace their telemetry by that of others.
-  bool wakes_say_nothing_;
+  const TeamObserver unseen_;  ///< a second ground station
   bool plans_are_read_;
-  InFlight air_;
-  radio::SimulatedRadio radio_;
-  std::vector<radio::Channel> channels_;  ///< around each node
-  radio::Positions positions_;            ///< of nodes_
-  std::vector<std::uint32_t> near_;       ///< to who sends
-  std::optional<radio::Mesh> mesh_;       ///< none: only who is in range is heard
-  std::vector<radio::Node> places_;       ///< for it
+  Ether ether_;
   FaultTimeline timeline_;
   std::optional<Instant> healing_;
   bool awaits_routes_;
   SiteFinder finder_;
-  GroundStation ground_;
+  std::deque<GroundStation> grounds_;
   std::vector<Aircraft> vehicles_;
-  std::vector<Station> nodes_;   ///< the vehicles, then the ground station
   std::vector<Hazard> hazards_;  ///< that exist by now
   std::set<HazardId> told_;
   std::set<SiteId> sites_done_;
   std::set<SiteId> sites_over_;                     ///< done, or refused by the operator
-  std::vector<std::optional<Instant>> restart_at_;  ///< of each node
+  std::vector<std::optional<Instant>> restart_at_;  ///< of each program, as stations are
   std::vector<std::optional<Instant>> gone_at_;
-  std::vector<Instant> stands_until_;  ///< the program of each node
+  std::vector<Instant> give_back_at_;  ///< each vehicle, by its pilot
+  std::vector<Instant> stands_until_;  ///< each program
   bool script_done_ = false;           ///< of the formation
   std::size_t orders_to_land_ = 0;     ///< that were given
   Instant moved_at_{};                 ///< it did, or was given an order
@@ -732,12 +709,18 @@ std::string trace_line(const mission::MissionEvent& event) {
 }
 
 std::string text_of(const FaultEvent& event) {
-  static constexpr std::array<const char*, 10> kNames{
-      "its program ends", "its program ends for good",
-      "starts anew",      "joins",
-      "is told of",       "appears",
-      "the radio heals",  "the radio,",
-      "is ordered,",      "stands still"};
+  static constexpr std::array<const char*, 12> kNames{"its program ends",
+                                                      "its program ends for good",
+                                                      "starts anew",
+                                                      "joins",
+                                                      "is told of",
+                                                      "appears",
+                                                      "the radio heals",
+                                                      "the radio,",
+                                                      "is ordered,",
+                                                      "stands still",
+                                                      "is taken by its pilot",
+                                                      "is given back"};
   return kNames.at(static_cast<std::size_t>(event.kind)) +
          (event.text.empty() ? "" : " " + event.text);
 }

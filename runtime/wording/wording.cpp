@@ -92,6 +92,7 @@ constexpr std::array kReasons{
     std::string_view{"the operator has withdrawn the site"},
     std::string_view{"the fence is in the way"},
     std::string_view{"the operator has taken the grant back"},
+    std::string_view{"others fly the aircraft"},
 };
 static_assert(kReasons.size() == static_cast<std::size_t>(Reason::count));
 

@@ -37,7 +37,7 @@ export function state_of(vehicle: Vehicle): string {
 const state_order = [
   "silent", "not_heard_yet", "on_the_ground", "waiting_for_the_start", "taking_off", "searching", "surveying", "leading", "bidding",
   "waiting_for_authorisation", "delivering", "assessing", "executing", "too_late_for_its_task", "monitoring", "holding", "holding_by_order",
-  "not_worked_with", "forming", "en_route", "standing_by", "range_reserve", "back_into_its_fence", "keeping_clear_of_traffic", "returning", "at_home", "landing",
+  "not_worked_with", "forming", "en_route", "standing_by", "range_reserve", "back_into_its_fence", "keeping_clear_of_traffic", "piloted", "returning", "at_home", "landing",
   "landed",
 ];
 const place_of = new Map(state_order.map((state, i) => [state, i]));

@@ -77,6 +77,7 @@ const states: Record<string, string> = {
   landing: "#c9b36a",
   landed: "#7d8a6b",
   keeping_clear_of_traffic: "#e6cf00",
+  piloted: "#d98cff",
 };
 
 export function state_colour(state: string | null): string {

@@ -160,12 +160,14 @@ class Participant {
   void note_over(const TaskId& task, Instant since);
   void give_up(const Lease& lease, Instant now);
   void send_status(Instant now);
+  [[nodiscard]] std::vector<TaskAssignment> awarded_in(const Award& award) const;
   [[nodiscard]] bool task_in_progress() const;
   [[nodiscard]] bool delivery_in_progress() const;
   [[nodiscard]] bool has_news(Instant now) const;
 
   ProtocolParams params_;
   VehicleId self_;
+  InstanceId instance_;
   StateMachine<State, Event> machine_{kTable, State::free};
   Round round_;             ///< the round bid in, or awarded in
   std::optional<Bid> bid_;  ///< sent again when the announcement is heard again

@@ -17,9 +17,9 @@ static_assert(std::variant_size_v<EventBody::variant> ==
 /// That alternative, with its defaults.
 [[nodiscard]] EventBody body_of(EventKind kind);
 
-/// Does it say that others fly the vehicle, or that its program may again? Nothing of both:
+/// Does it say that others fly the vehicle, or that its program does again? Nothing of both:
 /// nothing.
-[[nodiscard]] std::optional<bool> tells_piloted(const EventBody& news);
+[[nodiscard]] std::optional<bool> tells_piloted(AutopilotNews news);
 
 /// Names as many of them as it can.
 [[nodiscard]] event::FormationWarning formation_warning(event::FormationNews news,

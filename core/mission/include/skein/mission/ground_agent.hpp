@@ -80,10 +80,7 @@ class GroundAgent {
 
   /// Another ground station has the command: nothing is decided, repeated or passed on from now on;
   /// or this one has it (again), from the start on.
-  void set_watching(bool watching) {
-    watching_ = watching;
-    if (watching) commands_.clear();  // who has not heard them asks who has the command
-  }
+  void set_watching(bool watching, Instant now);
   /// What the ground station that has the command has just said: its decisions are this one's.
   void overhear(const Message& message, Instant now);
   /// A vehicle has heard of an order with that number: those to come are greater, whoever gave it.
@@ -177,7 +174,7 @@ class GroundAgent {
   [[nodiscard]] std::string silent_text(const AuthorisationRequest& request, Instant now) const;
   [[nodiscard]] std::optional<std::string> why_not_grant(const AuthorisationRequest& request,
                                                          Instant now);
-  void grant_again(PendingAuthorisation& pending, Authorisation before, Instant now);
+  void grant_again(PendingAuthorisation& pending, Instant now);
   void say(PendingAuthorisation& pending, const Authorisation& decision, Instant now,
            const std::string& although);
   [[nodiscard]] LedSite* led_site(SiteId site);

@@ -104,7 +104,7 @@ class OnboardAgent {
   /// What is left of its range is for the way home.
   [[nodiscard]] virtual bool range_spent() const { return false; }
   /// From now on others fly the aircraft, or this program again.
-  virtual void on_piloted(bool /*piloted*/) {}
+  virtual void on_piloted(bool /*piloted*/, Instant /*now*/) {}
   /// It goes by the telemetry of others, wherever they are (SeparationWatch).
   [[nodiscard]] virtual bool watches_others() const { return false; }
   [[nodiscard]] virtual std::optional<SeparationConflict> separation_conflict() const {

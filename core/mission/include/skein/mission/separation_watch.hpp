@@ -7,7 +7,6 @@
 #include <deque>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
@@ -83,8 +82,8 @@ class SeparationWatch {
   }
 
   void on_telemetry(const Telemetry& other, const VehicleState& own, Instant now);
-  /// From now on others fly that vehicle, or its program again; itself, too.
-  void on_piloted(VehicleId who, bool piloted);
+  /// From now on others fly this vehicle, or its program again.
+  void on_piloted(bool piloted) { piloted_ = piloted; }
   void step(const Self& self, Instant now);
 
   /// It is about to come down, and looks at who is below, until it is told that it is not.
@@ -111,6 +110,7 @@ class SeparationWatch {
     Duration delay{};            ///< of its state, when it was heard
     double climb_mps = 0.0;      ///< from one state to the next
     bool gives_way_too = false;  ///< to the same aircraft, perhaps
+    bool piloted = false;
     bool conflict = false;
     bool yields = false;  ///< this one, to it
     VehicleId gives_way;
@@ -158,7 +158,7 @@ class SeparationWatch {
   VehicleId self_;
   double layer_m_;
   std::map<VehicleId, Other> known_;
-  std::set<VehicleId> piloted_;
+  bool piloted_ = false;
   std::optional<double> target_;  ///< height, to give way
   double asked_m_;                ///< where it is to fly: its layer, or Self::height_m
   double base_m_;                 ///< the same, with room for those that follow

@@ -42,6 +42,7 @@ enum class ShownState : std::uint8_t {
   landing,
   landed,
   keeping_clear_of_traffic,
+  piloted,  ///< or flown by a failsafe of its autopilot
   count
 };
 [[nodiscard]] std::string_view to_string(ShownState state);

@@ -64,7 +64,7 @@ class VehicleAgent final : public OnboardAgent {
   [[nodiscard]] Activity activity() const;
   [[nodiscard]] Counters counters() const override;
   [[nodiscard]] bool range_spent() const override;
-  void on_piloted(bool piloted) override;
+  void on_piloted(bool piloted, Instant now) override;
   [[nodiscard]] bool watches_others() const override;
   [[nodiscard]] std::optional<SeparationConflict> separation_conflict() const override;
   [[nodiscard]] std::optional<TrafficWatch::Conflict> traffic_conflict() const override;

@@ -50,7 +50,7 @@ class VehicleNode {
   void on_state(const VehicleState& state, Instant now);
   void on_message(const Message& message, VehicleId sender, Instant now);
   void on_planning_result(const PlanningResult& result, Instant now);
-  void on_notice(const FlightNotice& notice);
+  void on_notice(const FlightNotice& notice, Instant now);
   /// Counts until the next one.
   void on_condition(const Condition& condition);
   /// A state or a timeout makes it tell of itself now: what its condition is should be given first.

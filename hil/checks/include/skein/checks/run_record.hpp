@@ -31,8 +31,8 @@ struct AgentEnd {
   std::optional<Instant> restarted_at;  ///< with a new agent that remembers nothing
 };
 
-/// For so long no program of a vehicle ran, or it stood still, for all or much of that time: its
-/// autopilot had it alone.
+/// For so long no program of a vehicle ran, or it stood still, for all or much of that time, or a
+/// pilot had it: its autopilot had it alone.
 struct LeftAlone {
   VehicleId vehicle;
   Instant from{};
@@ -76,7 +76,8 @@ struct RunRecord {
   std::vector<recording::PlaceRecord> places = {};  ///< of a formation, by the ground station
   std::vector<VehicleId> lost;  ///< vehicles that the bench ended on purpose before the mission did
   std::vector<AgentEnd> agent_ends;  ///< in the order of time
-  /// Of processes. In virtual time a program ends only where what its autopilot does then is safe.
+  /// By processes, or to pilots. In virtual time a program ends only where what its autopilot does
+  /// then is safe.
   std::vector<LeftAlone> left_alone = {};
   /// Programs in virtual time, in the order of time: their aircraft flew on by what they had said.
   std::vector<LeftAlone> stood_still = {};

@@ -10,6 +10,7 @@
 
 #include "skein/base/geometry.hpp"
 #include "skein/base/ids.hpp"
+#include "skein/base/stations.hpp"
 #include "skein/base/time.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/domain/path.hpp"
@@ -22,6 +23,9 @@ namespace skein::hil {
 
 /// What a vehicle does when something happens to it.
 enum class Role : std::uint8_t { any, leader, member };
+
+/// In partitions, and from outside: both speak as the ground station.
+inline constexpr VehicleId kSecondStation = station_node(2);
 
 /// A fault begins `after` the first moment at which all of this is so.
 struct When {
@@ -100,6 +104,17 @@ struct ProgramsStall {
   std::uint64_t pick = 0;
 };
 
+/// Pilots take aircraft that follow flight plans, and circle where they are; the operator gives
+/// them back where the fault ends. Empty: as with ProgramsEnd. In virtual time.
+struct PilotsTake {
+  std::vector<VehicleId> who;
+  std::uint64_t pick = 0;
+};
+
+/// The operator of the ground station that has not the command takes it. A mission with such a
+/// fault has a second one, which listens from the start on (kSecondStation).
+struct CommandTaken {};
+
 // What only processes have; the simulator passes over it.
 
 /// A node's program runs for the rest of the time only.
@@ -124,9 +139,10 @@ struct OtherRelease {
 struct Fault {
   When when;
   std::optional<Duration> lasts;  ///< nothing: for good
-  std::variant<ProgramsEnd, radio::Cut, radio::Disturbance, radio::Flood, LateStart, ClockOff,
-               Ordered, SitesReported, PlaceSeen, SiteWithdrawal, GrantTakenBack, RoutesOrdered,
-               BatteryFalls, Healing, ProgramsStall, ProgramSlow, DiskFull, ClockStep, OtherRelease>
+  std::variant<ProgramsEnd, CommandTaken, radio::Cut, radio::Disturbance, radio::Flood, LateStart,
+               ClockOff, Ordered, SitesReported, PlaceSeen, SiteWithdrawal, GrantTakenBack,
+               RoutesOrdered, BatteryFalls, Healing, ProgramsStall, PilotsTake, ProgramSlow,
+               DiskFull, ClockStep, OtherRelease>
       what;
 };
 
@@ -137,6 +153,8 @@ struct Fault {
 [[nodiscard]] Duration clock_offset(const std::vector<Fault>& faults, VehicleId node);
 /// Does a vehicle that does that have the role?
 [[nodiscard]] bool has_role(mission::Activity activity, Role role);
+/// The mission has a second ground station.
+[[nodiscard]] bool has_second_station(const std::vector<Fault>& faults);
 [[nodiscard]] bool is_of_other_release(const std::vector<Fault>& faults, VehicleId vehicle);
 /// When a vehicle takes off: at the epoch, unless a fault says otherwise.
 [[nodiscard]] Instant start_of(const std::vector<Fault>& faults, VehicleId vehicle);

@@ -52,7 +52,10 @@ struct FaultParams {
   Duration clock_offset{};    ///< of each vehicle's clock, to either side
   std::size_t airframes = 0;  ///< lost with the program
   std::size_t doubles = 0;    ///< vehicles of others that fly under a number of the team
+  std::size_t pilots = 0;     ///< times that one takes an aircraft, for up to a minute and a half
   std::size_t stalls = 0;     ///< times that a program stands still for seconds
+  std::size_t taken_over =
+      0;                      ///< times that the other one of two ground stations takes the command
   std::size_t ground = 0;     ///< times that the ground station's program ends and starts anew
   Duration planning{};        ///< a plan takes up to so long, in every vehicle
   std::size_t orders = 0;     ///< of the operator: to hold, to come home, to go on

@@ -101,13 +101,15 @@ struct FaultEvent {
     healed,
     radio,
     ordered,
-    stands_still
+    stands_still,
+    piloted,
+    given_back
   };
   Instant time{};
   Kind kind = Kind::healed;
   VehicleId vehicle;  ///< where it applies
   std::string text;
-  Duration lasts{};  ///< that a program stands still
+  Duration lasts{};  ///< that a program stands still, or a pilot has the aircraft
 };
 
 /// A body as whoever watches from outside sees it.
