@@ -206,6 +206,12 @@ bool Ownship::leaves_fence(Instant now) const {
   return soon && !config_.fence.holds(*soon);
 }
 
+bool Ownship::on_arc(const Vec2& centre, double radius_m) const {
+  constexpr double kShare = 0.1;
+  const double distance_m = (state_.position().horizontal() - centre).norm();
+  return std::abs(distance_m - radius_m) <= kShare * radius_m;
+}
+
 bool Ownship::on_track(const TimedPath& timed) const {
   const auto error = planning::follow_error(timed, state_, state_.time);
   return std::abs(error.along_m) < kOnTrackM && std::abs(error.cross_m) < kOnTrackM;

@@ -239,11 +239,13 @@ std::optional<SurveyedSite> Scout::survey(Instant now) {
   if (machine_.in(State::to_survey)) {
     if (now < arrival()) return std::nullopt;
     fire(Event::arrived);
+    strayed_ = false;
     outbox_.report(event::SurveyStarted{arrival()}, {}, survey_of(site_), arrival());
   }
+  strayed_ = strayed_ || !ownship_.on_arc(site_.position, ownship_.spec().sensor_radius_m);
   if (now < plan_.timed.end_time()) return std::nullopt;
   fire(Event::ended);
-  if (!ownship_.on_track(plan_.timed)) {
+  if (strayed_ || !ownship_.on_track(plan_.timed)) {
     outbox_.report(event::TaskFailed{TaskFailure::off_path}, {}, survey_of(site_), now);
     found_.push_back({site_});
     return std::nullopt;

@@ -121,6 +121,7 @@ class Scout {
   StateMachine<State, Event> machine_{kTable, State::idle};
   Site site_;                   ///< unless idle: that it flies to
   planning::TaskPlan plan_;     ///< of that flight
+  bool strayed_ = false;        ///< from the arc of its survey (Ownship::on_arc)
   std::set<SiteId> known_;      ///< found or announced by anybody
   std::set<SiteId> withdrawn_;  ///< by the operator
   std::vector<Found> found_;    ///< found here, waiting to be surveyed

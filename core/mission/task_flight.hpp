@@ -55,6 +55,7 @@ class TaskFlight {
   TaskAssignment assignment;
   planning::TaskPlan plan;
   bool untimely = false;  ///< it has been told that the wind does not let it be on time
+  bool strayed = false;   ///< from its arc (Ownship::on_arc), since it has begun
 
   /// Precondition: the table has it.
   void fire(Event event) {

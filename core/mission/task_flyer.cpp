@@ -287,6 +287,10 @@ void TaskFlyer::fly(Instant now) {
   if (task_->is_delivery()) commit_delivery(now);
   const bool due = !task_->in(TaskFlight::State::begun) && now >= task_->begin_time();
   if (due) begin(now);
+  if (task_->in(TaskFlight::State::begun) && !task_->is_delivery()) {
+    const double radius_m = ownship_.spec().assess_radius_m;
+    task_->strayed = task_->strayed || !ownship_.on_arc(task_->site.position, radius_m);
+  }
   if (task_->in(TaskFlight::State::begun) && now >= task_->end_time()) end(now);
 }
 
@@ -381,7 +385,7 @@ void TaskFlyer::begin(Instant now) {
 }
 
 void TaskFlyer::end(Instant now) {
-  const bool flown = ownship_.on_track(task_->plan.timed);
+  const bool flown = ownship_.on_track(task_->plan.timed) && !task_->strayed;
   if (task_->is_delivery()) ownship_.use_load();
   task_->fire(TaskFlight::Event::finished);
   const TaskFlight task = *std::exchange(task_, std::nullopt);

@@ -163,13 +163,18 @@ void Aircraft::taken_by_pilot(Instant now, const std::vector<Hazard>& hazards) {
   piloted_ = true;
   hold_orbit(now, hazards);
   ++numbers_before_;
-  node().on_notice({local(now), true, {.news = AutopilotNews::mode_changed, .detail = "LOITER"}},
-                   local(now));
+  tell_notice(true, {.news = AutopilotNews::mode_changed, .detail = "LOITER"}, now);
 }
 
 void Aircraft::given_back(Instant now) {
   if (!std::exchange(piloted_, false)) return;
-  node().on_notice({local(now), false, {.news = AutopilotNews::flying}}, local(now));
+  tell_notice(false, {.news = AutopilotNews::flying}, now);
+}
+
+/// With the state of that moment, as control tells it first.
+void Aircraft::tell_notice(bool warning, const AutopilotNotice& what, Instant now) {
+  untold_.emplace(local_state(), local(now));
+  node().on_notice({local(now), warning, what}, local(now));
 }
 
 void Aircraft::hold_orbit(Instant now, const std::vector<Hazard>& hazards) {

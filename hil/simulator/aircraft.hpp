@@ -140,6 +140,7 @@ class Aircraft {
   void see_state(Instant now);
   void hold_orbit(Instant now, const std::vector<Hazard>& hazards);
   void sink_at(Instant now);
+  void tell_notice(bool warning, const AutopilotNotice& what, Instant now);
 
   // Side by side what is looked at with every message: plans and tracks are kilobytes.
   const TeamMission& mission_;

@@ -513,7 +513,9 @@ void draw_surroundings(Random& random, TeamMission& mission, const FaultParams& 
     mission.heeds_wind = true;
   }
   if (params.narrow) {
-    mission.radio.bytes_per_s = random.uniform(kNarrow_bytes_per_s, 2.0 * kNarrow_bytes_per_s);
+    // Vehicles tell a second ground station how they are, and it has its own word to say.
+    const double least_bytes_per_s = kNarrow_bytes_per_s * (params.taken_over > 0 ? 1.5 : 1.0);
+    mission.radio.bytes_per_s = random.uniform(least_bytes_per_s, 2.0 * least_bytes_per_s);
   }
 }
 

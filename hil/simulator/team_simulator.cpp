@@ -582,6 +582,8 @@ class Team {
           kind == mission::EventKind::authorisation_withdrawn ||
           kind == mission::EventKind::authorisation_refused) {
         over(event->task.site);
+      } else if (kind == mission::EventKind::authorised) {
+        sites_over_.erase(event->task.site);  // the operator of another station
       }
       if (mission_.formation) on_formation_event(*event, now);
     }
@@ -737,6 +739,13 @@ std::string describe(const TeamMission& mission) {
   for (const Fault& fault : mission.faults) text += "fault: " + describe(fault) + "\n";
   for (const auto& v : mission.vehicles) {
     if (v.flies_as) text += names_of({v.spec.id}) + " flies as " + names_of({*v.flies_as}) + "\n";
+  }
+  if (mission.radio.bytes_per_s) {
+    text += fmt::format("the air carries {:.1f} kB/s\n", 1e-3 * *mission.radio.bytes_per_s);
+  }
+  if (const Vec2& wind = mission.wind.steady_mps; wind.norm() > 0.0) {
+    text += fmt::format("wind to ({:.1f}, {:.1f}) m/s, gusts of {:.1f} m/s\n", wind.x(), wind.y(),
+                        mission.wind.gust_mps);
   }
   if (!healing_of(mission.faults)) return text;
   text +=
