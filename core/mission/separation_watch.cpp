@@ -56,9 +56,10 @@ Vec2 position_at(const VehicleState& state, double seconds) {
 }  // namespace
 
 SeparationWatch::SeparationWatch(const coalition::ProtocolParams& params, VehicleId self,
-                                 double layer_m)
+                                 InstanceId instance, double layer_m)
     : params_{params},
       self_{self},
+      instance_{instance},
       layer_m_{layer_m},
       asked_m_{layer_m},
       base_m_{layer_m},
@@ -80,7 +81,8 @@ bool SeparationWatch::on_the_way(const VehicleState& own, const VehicleState& ot
 }
 
 void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& own, Instant now) {
-  if (params_.separation_look_ahead == Duration{} || other.vehicle == self_) return;
+  if (params_.separation_look_ahead == Duration{}) return;
+  if (other.vehicle == self_ && other.instance == instance_) return;
   if (!has_taken_off(own)) return;
   const double apart_m = other.state.z_m - own.z_m;
   const auto found = known_.find(other.vehicle);
@@ -98,6 +100,7 @@ void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& o
   const ActivityDetail in_detail = other.detail;
   known.gives_way_too = in_detail == ActivityDetail::avoiding_traffic;
   known.piloted = in_detail == ActivityDetail::piloted;
+  known.instance = other.instance;
   known.state = other.state;
   known.activity = other.activity;
   known.heard = now;
@@ -348,7 +351,8 @@ bool SeparationWatch::must_yield(VehicleId id, const Other& other, const Self& s
   if (self.activity == Activity::landing) return false;  // its autopilot flies it down
   const bool own_task = self.activity == Activity::executing;
   const bool other_task = other.activity == Activity::executing;
-  return own_task != other_task ? other_task : self_ > id;
+  if (own_task != other_task) return other_task;
+  return std::pair{self_, instance_} > std::pair{id, other.instance};
 }
 
 void SeparationWatch::tell(VehicleId id, Other& other, const Approach& a, Instant now) {

@@ -25,8 +25,12 @@ constexpr double kLayer_m = 120.0;
 class Flyer {
  public:
   Flyer(std::uint16_t id, const Vec2& from, double heading_rad, double speed_mps,
-        double layer_m = kLayer_m, const coalition::ProtocolParams& params = {})
-      : watch{params, VehicleId{id}, layer_m}, id_{id}, layer_m_{layer_m} {
+        double layer_m = kLayer_m, const coalition::ProtocolParams& params = {},
+        InstanceId program = {})
+      : watch{params, VehicleId{id}, program, layer_m},
+        id_{id},
+        program_{program},
+        layer_m_{layer_m} {
     state.x_m = from.x();
     state.y_m = from.y();
     state.z_m = layer_m;
@@ -62,6 +66,7 @@ class Flyer {
   [[nodiscard]] Telemetry telemetry() const {
     Telemetry told;
     told.vehicle = id();
+    told.instance = program_;
     told.state = state;
     told.activity = activity;
     told.detail = detail;
@@ -84,6 +89,7 @@ class Flyer {
 
  private:
   std::uint16_t id_;
+  InstanceId program_;
   double layer_m_;
   FlightPlan plan_;
 };
@@ -169,6 +175,16 @@ TEST(SeparationWatch, TheHigherNumberGivesWayUpwardsAndComesBack) {
     EXPECT_EQ(flyer.restored, 1);
     EXPECT_FALSE(flyer.watch.conflict());
   }
+}
+
+TEST(SeparationWatch, OfTwoUnderOneNumberOneGivesWay) {
+  const coalition::ProtocolParams params;
+  Sky sky{{Flyer{1, {-500.0, 0.0}, 0.0, 25.0, kLayer_m, params, {7}},
+           Flyer{1, {500.0, 2.0}, kPi, 25.0, kLayer_m, params, {8}}}};
+  sky.fly(60.0);
+  EXPECT_FALSE(sky.flyers[0].gave_way);
+  EXPECT_TRUE(sky.flyers[1].gave_way);
+  EXPECT_GE(sky.least.vertical_m, 5.0);
 }
 
 TEST(SeparationWatch, WithoutItTheyWouldHaveMet) {

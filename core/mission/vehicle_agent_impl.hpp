@@ -22,7 +22,7 @@ class VehicleAgent::Impl {
   explicit Impl(const VehicleAgentConfig& config)
       : outbox{config.vehicle.id},
         ownship_{config},
-        separation_{config.protocol, config.vehicle.id, config.vehicle.height_m},
+        separation_{config.protocol, config.vehicle.id, config.instance, config.vehicle.height_m},
         traffic_{config.traffic} {}
 
   void on_state(const VehicleState& state, Instant now);

@@ -65,8 +65,10 @@ class SeparationWatch {
     HeightBand room = {};
   };
 
-  /// `layer_m`: the vehicle's own height, above the origin.
-  SeparationWatch(const coalition::ProtocolParams& params, VehicleId self, double layer_m);
+  /// `layer_m`: the vehicle's own height, above the origin. Another program under its number is
+  /// another vehicle.
+  SeparationWatch(const coalition::ProtocolParams& params, VehicleId self, InstanceId instance,
+                  double layer_m);
 
   /// Who lands, comes down through the heights of others: it is looked at from so much farther
   /// above them.
@@ -104,6 +106,7 @@ class SeparationWatch {
 
  private:
   struct Other {
+    InstanceId instance;
     VehicleState state;
     Activity activity = Activity::searching;
     Instant heard{};
@@ -156,6 +159,7 @@ class SeparationWatch {
 
   coalition::ProtocolParams params_;
   VehicleId self_;
+  InstanceId instance_;
   double layer_m_;
   std::map<VehicleId, Other> known_;
   bool piloted_ = false;
