@@ -11,7 +11,7 @@ namespace skein::mission {
 /// The states of a vehicle's parts, as far as they make its activity.
 struct PartStates {
   Failsafe::Action failsafe = Failsafe::Action::none;
-  bool piloted = false;
+  bool piloted = false;  ///< others fly it
   bool lands = false;   ///< comes down by order, or has
   bool landed = false;  ///< and is on the ground
   bool has_task = false;

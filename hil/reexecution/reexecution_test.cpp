@@ -172,11 +172,14 @@ void fly(const std::filesystem::path& folder) {
         v->inbox.emplace_back(mission::SiteReport{VehicleId{1}, site}, kOther);
     }
     if (now == at_seconds(30.0)) {
-      vehicles[0]->notices.push_back({now, true, {AutopilotNews::mode_changed}});
+      vehicles[0]->notices.push_back({now, true, {AutopilotNews::rebooted}});
       // Another node under its number, which it takes for no word of its own.
       mission::HazardReport hazard{{HazardId{7}, {-3000.0, -3000.0}, 50.0}};
       vehicles[1]->inbox.emplace_back(hazard, VehicleId{2});
       vehicles[2]->inbox.emplace_back(mission::Command{{3}, 1, mission::CommandKind::hold}, kOther);
+    }
+    if (now == at_seconds(140.0)) {
+      vehicles[2]->notices.push_back({now, true, {AutopilotNews::mode_changed}});
     }
     for (auto& v : vehicles) v->step(now);
     for (std::size_t from = 0; from < vehicles.size(); ++from) {
@@ -311,7 +314,7 @@ TEST_F(ReexecutionTest, EveryKindOfInputCounts) {
     return std::holds_alternative<recording::NoticeGiven>(content);
   });
   ASSERT_TRUE(notice.ok());
-  EXPECT_THAT(notice->difference, HasSubstr("mode_changed"));
+  EXPECT_THAT(notice->difference, HasSubstr("rebooted"));
   const auto namesake = without("vehicle-02", [](const Content& content) {
     return std::holds_alternative<recording::NamesakeHeard>(content);
   });

@@ -740,6 +740,7 @@ std::string describe(const TeamMission& mission) {
   for (const auto& v : mission.vehicles) {
     if (v.flies_as) text += names_of({v.spec.id}) + " flies as " + names_of({*v.flies_as}) + "\n";
   }
+  if (!healing_of(mission.faults)) return text;
   if (mission.radio.bytes_per_s) {
     text += fmt::format("the air carries {:.1f} kB/s\n", 1e-3 * *mission.radio.bytes_per_s);
   }
@@ -747,7 +748,6 @@ std::string describe(const TeamMission& mission) {
     text += fmt::format("wind to ({:.1f}, {:.1f}) m/s, gusts of {:.1f} m/s\n", wind.x(), wind.y(),
                         mission.wind.gust_mps);
   }
-  if (!healing_of(mission.faults)) return text;
   text +=
       fmt::format("the mission ends at {:.2f} s at the latest\n", to_seconds(mission.duration_max));
   for (const auto& h : mission.hazards) {

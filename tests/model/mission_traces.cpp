@@ -445,6 +445,10 @@ int main(int argc, char** argv) {
       std::fprintf(stderr, "%s\n", mission.error().message.c_str());
       return 2;
     }
+    // The model tells vehicles apart by their numbers.
+    const bool used_twice =
+        std::ranges::any_of(mission->vehicles, [](const auto& v) { return v.flies_as.has_value(); });
+    if (used_twice) continue;
     skein::Tracer tracer{*mission};
     (void)skein::hil::simulate_team(*mission, tracer.observer());
     tracer.print(std::to_string(seed));

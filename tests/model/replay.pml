@@ -326,7 +326,10 @@ inline heard() {
     on_decision_leader(who)
   :: else
   fi;
-  looks(who)
+  if
+  :: begun[who] && fend[who] <= NOW(who) -> skip  /* it says that first, before it looks at its lease */
+  :: else -> looks(who)
+  fi
 }
 
 inline told() {

@@ -23,6 +23,14 @@ export default [
     to: 'if (mine.empty() || now > message.lease_until + params_.clock_guard) {',
   },
   {
+    name: 'award-to-another-program',
+    slip: 'an award counts for whatever program has the number',
+    promise: 'one owner a task',
+    file: participant,
+    from: 'if (program == InstanceId{} || program == instance_) mine.push_back(award.assignments[i]);',
+    to: 'if (program == InstanceId{} || program != InstanceId{}) mine.push_back(award.assignments[i]);',
+  },
+  {
     name: 'renewal-of-an-older-round',
     slip: 'a renewal that was said for an older round prolongs the lease of the newer one',
     promise: 'a lease is its own round\'s',

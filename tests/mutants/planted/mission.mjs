@@ -59,10 +59,26 @@ export default [
     slip: 'what a delivery takes off the loads is not counted',
     promise: 'no vehicle delivers more than it carries',
     file: flyer,
-    from: `  const bool flown = ownship_.on_track(task_->plan.timed);
+    from: `&& !task_->strayed;
   if (task_->is_delivery()) ownship_.use_load();`,
-    to: `  const bool flown = ownship_.on_track(task_->plan.timed);
+    to: `&& !task_->strayed;
   if (task_->is_delivery() && !flown) ownship_.use_load();`,
+  },
+  {
+    name: 'arc-left-counts',
+    slip: 'an assessment counts as flown though its arc was left',
+    promise: 'what is told as done was flown as it was to be',
+    file: flyer,
+    from: 'task_->strayed = task_->strayed || !ownship_.on_arc(task_->site.position, radius_m);',
+    to: 'task_->strayed = task_->strayed && !ownship_.on_arc(task_->site.position, radius_m);',
+  },
+  {
+    name: 'goes-on-where-its-old-plan-is',
+    slip: 'who is given back by its pilot does not begin where it is',
+    promise: 'a plan begins where the vehicle is',
+    file: 'core/mission/vehicle_agent_failsafe.cpp',
+    from: 'const bool is_given_back = failsafe_.facts().piloted && !piloted;',
+    to: 'const bool is_given_back = failsafe_.facts().piloted && piloted;',
   },
   {
     name: 'bid-without-the-way-home',
@@ -166,8 +182,8 @@ export default [
     slip: 'who has a task gives way to who has none, and the other to it',
     promise: 'one of a pair gives way, the same by both',
     file: separation,
-    from: 'return own_task != other_task ? other_task : self_ > id;',
-    to: 'return own_task != other_task ? own_task || other_task : self_ > id;',
+    from: 'if (own_task != other_task) return other_task;',
+    to: 'if (own_task != other_task) return true;',
   },
   {
     name: 'hold-at-home-not-looked-at',
