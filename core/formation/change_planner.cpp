@@ -92,6 +92,10 @@ class Planner {
       const std::function<bool(const Transfer&)>& allowed) const;
 
  private:
+  /// The shortest way of any of them that leads it clear; the others stay.
+  [[nodiscard]] std::optional<PlannedChange> lead_out(
+      const Change& stays, const std::vector<std::size_t>& vehicles,
+      const std::function<bool(const Transfer&)>& allowed) const;
   [[nodiscard]] double at_start_m(std::size_t a, std::size_t b) const {
     return stretched(request_.transfers[a].from - request_.transfers[b].from).norm();
   }
@@ -390,14 +394,26 @@ std::optional<PlannedChange> Planner::make_room(
   Change stays = straight();
   for (Mover& mover : stays.movers) mover.points.back() = mover.points.front();
   if (!valid(stays)) return std::nullopt;
+  // Below one that is lost, and may come down, nobody waits for others.
+  std::vector<std::size_t> below;
   std::vector<std::size_t> near;
   for (std::size_t i = 0; i < count_; ++i) {
-    if (rests_too_near(i)) near.push_back(i);
+    if (!is_outside(request_.transfers[i].from)) {
+      below.push_back(i);
+    } else if (rests_too_near(i)) {
+      near.push_back(i);
+    }
   }
-  if (near.empty()) return std::nullopt;
+  if (auto way_out = lead_out(stays, below, allowed)) return way_out;
+  return lead_out(stays, near, allowed);
+}
+
+std::optional<PlannedChange> Planner::lead_out(
+    const Change& stays, const std::vector<std::size_t>& vehicles,
+    const std::function<bool(const Transfer&)>& allowed) const {
   const double step_m = apart_m_ / kRoomSteps;
   for (int steps = 1; steps <= kRoomStepsMax; ++steps) {
-    for (const std::size_t vehicle : near) {
+    for (const std::size_t vehicle : vehicles) {
       for (int direction = 0; direction <= kRoomDirections; ++direction) {
         Transfer way = request_.transfers[vehicle];
         way.to = way.from;

@@ -124,7 +124,8 @@ class FlownAgent : public HeardAgent {
   std::uint64_t orders_ = 0;
 };
 
-/// What a part of an agent needs around it: a vehicle that is exactly where its plan has it.
+/// What a part of an agent needs around it: a vehicle that is exactly where its plan has it, or so
+/// far beside.
 struct PartsBench {
   explicit PartsBench(const VehicleAgentConfig& config = plane_config())
       : ownship{config}, outbox{config.vehicle.id} {
@@ -136,8 +137,8 @@ struct PartsBench {
     VehicleState state;
     state.time = now;
     const Pose2 pose = ownship.flight().started() ? ownship.flight().pose_at(now) : Pose2{};
-    state.x_m = pose.x_m;
-    state.y_m = pose.y_m;
+    state.x_m = pose.x_m + beside_m.x();
+    state.y_m = pose.y_m + beside_m.y();
     const Vec2 through_air = kTestSpeed_mps * unit_vector(pose.heading_rad) - wind_mps;
     state.course_rad = pose.heading_rad;
     state.heading_rad = std::atan2(through_air.y(), through_air.x());
@@ -166,6 +167,7 @@ struct PartsBench {
   }
 
   Vec2 wind_mps{0.0, 0.0};
+  Vec2 beside_m{0.0, 0.0};  ///< of where its plan has it
   Instant now{};
   Ownship ownship;
   Outbox outbox;

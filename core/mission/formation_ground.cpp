@@ -20,7 +20,10 @@ using formation::Change;
 using formation::ChangeMotion;
 using formation::Transfer;
 
-constexpr Duration kRepeat = std::chrono::milliseconds{500};
+/// A change of few is heard within kStuck where half of what is said is lost; one of many is as
+/// many datagrams.
+constexpr Duration kRepeat = std::chrono::milliseconds{200};
+constexpr Duration kRepeatForEach = std::chrono::milliseconds{4};
 constexpr Duration kPeriod = std::chrono::milliseconds{100};
 /// At rest for so long without having arrived: nothing will move any more.
 constexpr Duration kStuck = std::chrono::seconds{2};
@@ -49,10 +52,8 @@ constexpr double kTrimMax_m = 1.0;
 /// A shape is made so much larger at most where places of it cannot be taken.
 constexpr std::size_t kSparePlaces = 8;
 
-/// A change of so many vehicles is as many datagrams.
 Duration repeat_after(const Change& change) {
-  constexpr std::size_t kOfOneRepeat = 128;
-  return static_cast<std::int64_t>(1 + change.movers.size() / kOfOneRepeat) * kRepeat;
+  return kRepeat + static_cast<std::int64_t>(change.movers.size()) * kRepeatForEach;
 }
 
 std::string metres_of(double m) {
@@ -367,6 +368,7 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   sent_.push_back(*change_);
   makes_room_ = preview.makes_room.has_value();
   give_again_ = makes_room_;
+  is_sent_ = true;
   withdrawn_ = false;
   stuck_since_.reset();
   near_since_.reset();
@@ -479,7 +481,7 @@ void FormationGround::on_timeout(Instant now) {
                                              found->second.status.progress.change >= number_;
                                     });
   find_stuck(now);
-  if (!all_know && !give_again_ && now >= send_next_) {
+  if (!all_know && is_sent_ && now >= send_next_) {
     send_next_ = now + repeat_after(*change_);
     messages_.push(*change_);
   }
@@ -498,7 +500,10 @@ void FormationGround::find_lost(Instant now) {
 
 void FormationGround::lose(VehicleId vehicle, Member& member, FormationNews why, Instant now) {
   member.lost = true;
-  give_again_ = give_again_ || is_led(vehicle);
+  if (is_led(vehicle)) {
+    give_again_ = true;
+    is_sent_ = false;
+  }
   warn(why, {vehicle}, now);
 }
 
@@ -523,8 +528,9 @@ void FormationGround::find_stuck(Instant now) {
     return;
   }
   if (!stuck_since_) stuck_since_ = now;
-  if (now - *stuck_since_ >= kStuck && !give_again_) {
+  if (now - *stuck_since_ >= kStuck && is_sent_) {
     give_again_ = true;
+    is_sent_ = false;
     warn(FormationNews::not_begun, {who}, now);
   }
   withdrawn_ = now - *stuck_since_ >= kStuck + kMessageLife;

@@ -31,6 +31,8 @@ class Team {
     }
   }
   void lose(std::size_t index) { vehicles_.at(index).lost = true; }
+  /// The ground station is not.
+  void is_heard_by_nobody(bool so) { mute_ = so; }
   void start_anew(std::size_t index, const Vec3& place) {
     Vehicle& v = vehicles_.at(index);
     FormationAgentConfig config;
@@ -124,6 +126,7 @@ class Team {
   void hear(const Message& message, VehicleId sender) {
     said.emplace_back(message, sender);
     if (sender != kGroundStation) ground_.on_message(message, now);
+    if (sender == kGroundStation && mute_) return;
     for (Vehicle& v : vehicles_) {
       if (v.id != sender) v.agent.on_message(message, sender, now);
     }
@@ -131,6 +134,7 @@ class Team {
 
   FormationGround ground_;
   std::vector<Vehicle> vehicles_;
+  bool mute_ = false;
 };
 
 /// Abreast, 4 m apart.
@@ -335,6 +339,17 @@ TEST(FormationGround, WhoRestTooNearAreLedApartFirst) {
   ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
   EXPECT_EQ(team.count(EventKind::change_begun), 3U);
   EXPECT_EQ(team.count(EventKind::formation_held), 2U) << "that room is made is no formation";
+}
+
+TEST(FormationGround, WhoHasNotHeardOfTheRoomToBeMadeIsToldAgain) {
+  Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.goes_up());
+  team.start_anew(1, team.position(0) + Vec3{3.1, 0.0, 0.0});
+  team.is_heard_by_nobody(true);
+  ASSERT_TRUE(team.until([&] { return team.count(EventKind::change_begun) == 2; }));
+  team.is_heard_by_nobody(false);
+  ASSERT_TRUE(team.until([&] { return (team.position(0) - team.position(1)).norm() > 3.9; }));
+  EXPECT_EQ(team.count(EventKind::change_begun), 2U) << "by the same change";
 }
 
 TEST(FormationGround, WhoStandTooNearAreNotLedApart) {

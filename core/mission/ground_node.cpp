@@ -142,9 +142,22 @@ void GroundNode::on_setup(const Setup& setup, Instant now) {
   take_differences(setup.node, now);
   agent_.note_order(setup.newest_order, now);
   const Command standing = orders_.standing(setup.node, kGroundStation);
-  const bool asks = !setup.knows_orders && now >= knows_orders_at_;
+  if (orders_heard_.contains(setup.node) || orders_heard_.size() < OrderBook::kVehiclesMax) {
+    orders_heard_[setup.node] = setup.newest_order;
+  }
+  const bool asks = !setup.knows_orders && now >= knows_orders_at_ && knows_orders();
   if (asks || number_of(standing) > setup.newest_order) messages_.push(Message{standing});
   if (!watching_) order_again(setup, standing, now);
+}
+
+/// No vehicle that is heard obeys an order that this one has not heard of, where another had the
+/// command: what stands for whom, vehicles know then.
+bool GroundNode::knows_orders() const {
+  return std::ranges::none_of(orders_heard_, [this](const auto& heard) {
+    const auto known = fleet().vehicles().find(heard.first);
+    const bool is_heard = known != fleet().vehicles().end() && !known->second.silent;
+    return is_heard && heard.second > number_of(orders_.standing(heard.first, kGroundStation));
+  });
 }
 
 /// Who had the command before has gone on to order a vehicle that could not hear this one: what was

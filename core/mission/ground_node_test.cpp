@@ -419,6 +419,30 @@ TEST(GroundNode, WhoWatchesSaysNothingAndGoesOnFromWhatTheOtherHasSaid) {
   EXPECT_EQ(told.front().kind, CommandKind::hold);
 }
 
+TEST(GroundNode, WhoHasNotHeardAnOrderThatStandsLeavesTheAnswerToVehicles) {
+  GroundNode ground = node();
+  ground.watch(at_seconds(1.0));
+  ground.take_command(InstanceId{9}, at_seconds(10.0));
+  ground.on_message(telemetry_of(Activity::holding), kVehicle, at_seconds(20.0));
+  mission::Setup obeys = setup_of(kVehicle, "");
+  obeys.newest_order = 13'270;  // of who had the command before, out of reach of this one
+  ground.on_message(obeys, kVehicle, at_seconds(20.0));
+  mission::Setup asks = setup_of({1}, "");
+  asks.knows_orders = false;
+  ground.on_message(asks, {1}, at_seconds(20.0));
+  EXPECT_TRUE(said_of<Command>(ground).empty()) << "that no order stands";
+  ASSERT_TRUE(ground.command(kGroundStation, CommandKind::hold, at_seconds(21.0)).ok());
+  const auto said = said_of<Command>(ground);
+  ASSERT_FALSE(said.empty());
+  obeys.newest_order = number_of(said.back());
+  ground.on_message(obeys, kVehicle, at_seconds(22.0));
+  ground.on_message(asks, {1}, at_seconds(22.0));
+  const auto told = said_of<Command>(ground);
+  const auto answer = std::ranges::find(told, VehicleId{1}, &Command::vehicle);
+  ASSERT_NE(answer, told.end());
+  EXPECT_EQ(answer->kind, CommandKind::hold);
+}
+
 TEST(GroundNode, WhoHasWatchedDoesNotGoOnWithTheLandingsOfBefore) {
   GroundNode ground = node();
   Telemetry telemetry = telemetry_of(Activity::holding);

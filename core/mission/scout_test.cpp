@@ -52,6 +52,18 @@ TEST(Scout, SurveysWhatItFindsAndSaysThatItIsToBeLed) {
   EXPECT_EQ(s.reported(EventKind::survey_done), 1);
 }
 
+TEST(Scout, ASurveyWhoseArcWasLeftIsFlownAgain) {
+  Scouting s;
+  s.find(test_site(1));
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  s.beside_m = {25.0, 0.0};
+  EXPECT_FALSE(s.fly_until(300.0));
+  EXPECT_EQ(s.reported(EventKind::survey_done), 0);
+  s.beside_m = {0.0, 0.0};
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_EQ(s.scout.state(), State::to_survey);
+}
+
 TEST(Scout, ASiteThatThereIsNoRoomForIsTakenUpWhenItIsSeenAgain) {
   Scouting s;
   for (std::uint16_t id = 1; id <= 17; ++id) s.find(test_site(id));

@@ -183,40 +183,58 @@ TEST(TaskFlyer, AGrantInTheLastMomentBeforeTheGateIsTooLate) {
   }
 }
 
+constexpr double kArc_s = 60.0;
+
+/// Is to assess at kArc_s what another delivers then, and has flown on until a second after that.
+void awaits_delivery(Flying& f, double delivered_s) {
+  Site site = test_site(1);
+  site.assessments.push_back({});
+  site.assessments[0].dwell = std::chrono::seconds{4};
+  site.assess_wait = std::chrono::seconds{10};
+  coalition::Announcement call;
+  call.round = kRound;
+  call.site = site;
+  call.tasks = tasks_after_survey(site);
+  call.bids_until = f.now + std::chrono::seconds{1};
+  call.formed_at = f.now + std::chrono::seconds{2};
+  f.hear(coalition::Message{call});
+  coalition::Award award;
+  award.round = kRound;
+  award.site = site;
+  award.formed_at = f.now + std::chrono::seconds{1};
+  award.assignments = {{{{1}, TaskKind::deliver, 0}, {77}, at_seconds(delivered_s)},
+                       {{{1}, TaskKind::assess, 0}, f.ownship.spec().id, at_seconds(kArc_s)}};
+  award.awarded_at = f.now;
+  award.lease_until = at_seconds(120.0);
+  f.hear(coalition::Message{award});
+  f.fly_until(delivered_s + 1.0);
+  coalition::MemberStatus status{kRound, {77}, {}};
+  status.tasks = {
+      {{{1}, TaskKind::deliver, 0}, coalition::TaskState::done, at_seconds(delivered_s)}};
+  f.hear(coalition::Message{status});
+}
+
 /// Of the last delivery, as who flew it has told its end.
 TEST(TaskFlyer, AnAssessmentBeginsOnlyAfterTheWait) {
-  constexpr double kArc_s = 60.0;
   for (const double delivered_s : {45.0, 55.0}) {
     Flying f;
-    Site site = test_site(1);
-    site.assessments.push_back({});
-    site.assessments[0].dwell = std::chrono::seconds{4};
-    site.assess_wait = std::chrono::seconds{10};
-    coalition::Announcement call;
-    call.round = kRound;
-    call.site = site;
-    call.tasks = tasks_after_survey(site);
-    call.bids_until = f.now + std::chrono::seconds{1};
-    call.formed_at = f.now + std::chrono::seconds{2};
-    f.hear(coalition::Message{call});
-    coalition::Award award;
-    award.round = kRound;
-    award.site = site;
-    award.formed_at = f.now + std::chrono::seconds{1};
-    award.assignments = {{{{1}, TaskKind::deliver, 0}, {77}, at_seconds(delivered_s)},
-                         {{{1}, TaskKind::assess, 0}, f.ownship.spec().id, at_seconds(kArc_s)}};
-    award.awarded_at = f.now;
-    award.lease_until = at_seconds(120.0);
-    f.hear(coalition::Message{award});
-    f.fly_until(delivered_s + 1.0);
-    coalition::MemberStatus status{kRound, {77}, {}};
-    status.tasks = {
-        {{{1}, TaskKind::deliver, 0}, coalition::TaskState::done, at_seconds(delivered_s)}};
-    f.hear(coalition::Message{status});
+    awaits_delivery(f, delivered_s);
     f.fly_until(kArc_s + 2.0);
     const bool may = delivered_s + 10.0 < kArc_s;
     EXPECT_EQ(f.reported(EventKind::task_started), may ? 1 : 0) << delivered_s;
     EXPECT_EQ(f.reported(EventKind::authorisation_late), may ? 0 : 1) << delivered_s;
+  }
+}
+
+TEST(TaskFlyer, AnAssessmentWhoseArcWasLeftIsNotDone) {
+  for (const double beside_m : {0.0, 25.0}) {
+    Flying f;
+    awaits_delivery(f, 45.0);
+    f.beside_m = {beside_m, 0.0};
+    f.fly_until(kArc_s + 6.0);
+    const bool left = beside_m > 0.0;
+    EXPECT_EQ(f.reported(EventKind::task_done), left ? 0 : 1);
+    EXPECT_EQ(f.reported(EventKind::task_failed), left ? 1 : 0);
   }
 }
 

@@ -15,6 +15,7 @@ namespace {
 
 /// An orbit in wind is flown some metres off its circle.
 constexpr double kOrbitClearance_m = 15.0;
+constexpr double kOrbitClearance_s = 2.0;  ///< by the wind's speed
 constexpr double kSink_mps = 1.0;
 /// A vehicle's height may change by that before it hears what is being said.
 constexpr double kHeightOnTheWay_m = 1.0;
@@ -137,11 +138,13 @@ bool Aircraft::in_place() const {
 
 std::optional<double> Aircraft::hold_curvature(const std::vector<Hazard>& hazards) const {
   const double radius = what_.spec.planning_radius_m();
+  const double clearance_m =
+      kOrbitClearance_m + kOrbitClearance_s * mission_.wind.steady_mps.norm();
   const Pose2 here = state_.pose();
   for (const double side : {1.0, -1.0}) {
     const Vec2 centre = here.position() + side * radius * left_of(unit_vector(here.heading_rad));
     const bool clear = std::all_of(hazards.begin(), hazards.end(), [&](const Hazard& h) {
-      return std::abs((h.centre - centre).norm() - radius) > h.radius_m + kOrbitClearance_m;
+      return std::abs((h.centre - centre).norm() - radius) > h.radius_m + clearance_m;
     });
     if (clear) return side / radius;
   }

@@ -354,6 +354,13 @@ class Team {
     }
   }
 
+  /// What a program does first that stood still: it looks where its aircraft is.
+  void wake(std::size_t i, Instant now) {
+    if (stands_until_[i] == Instant::min()) return;
+    stands_until_[i] = Instant::min();
+    (void)vehicles_[i].tell_state(now);
+  }
+
   void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now,
                    bool with_airframe) {
     if (!ether_.stations()[i].on) return;  // down already
@@ -422,8 +429,9 @@ class Team {
         continue;
       }
       Aircraft& v = vehicles_[parcel->to];
-      if (!v.running() || (parcel->only_wakes && ether_.wakes_say_nothing() && v.is_quiet(now)))
-        continue;
+      if (!v.running()) continue;
+      wake(parcel->to, now);
+      if (parcel->only_wakes && ether_.wakes_say_nothing() && v.is_quiet(now)) continue;
       if (const auto* planned = std::get_if<mission::PlanningResult>(parcel->what.get())) {
         if (parcel->life == v.life()) v.node().on_planning_result(*planned, v.local(now));
       } else {

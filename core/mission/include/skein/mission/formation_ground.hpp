@@ -146,6 +146,7 @@ class FormationGround {
   std::uint32_t recalled_ = 0;           ///< the newest change of an earlier process
   bool succeeds_ = false;                ///< somebody flies what this one does not know
   bool give_again_ = false;              ///< somebody was lost in the change, or has not begun it
+  bool is_sent_ = false;     ///< the newest change, until all know it, or it is given up
   bool makes_room_ = false;  ///< the newest change leads one out of the others' way only
   bool withdrawn_ = false;   ///< nobody begins the newest change any more
   std::optional<Instant> stuck_since_;

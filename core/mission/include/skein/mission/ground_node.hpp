@@ -164,6 +164,7 @@ class GroundNode {
   [[nodiscard]] std::optional<Message> next_message();
   void note_refusal(const Authorisation& decision, Instant now);
   void on_setup(const Setup& setup, Instant now);
+  [[nodiscard]] bool knows_orders() const;
   void order_again(const Setup& setup, const Command& standing, Instant now);
   void take_differences(VehicleId vehicle, Instant now);
   [[nodiscard]] bool stays_in_formation(VehicleId vehicle) const;
@@ -193,8 +194,9 @@ class GroundNode {
   /// The first order of this ground station since it took the command from another; none: it never
   /// did.
   std::optional<std::uint64_t> reign_from_;
-  std::map<VehicleId, std::uint64_t> told_;  ///< the newest order to each, and to all
-  BoundedQueue<Message> messages_{64};       ///< the node's own
+  std::map<VehicleId, std::uint64_t> told_;          ///< the newest order to each, and to all
+  std::map<VehicleId, std::uint64_t> orders_heard_;  ///< the newest that each has heard
+  BoundedQueue<Message> messages_{64};               ///< the node's own
   BoundedQueue<MissionEvent> events_{64};
 };
 
