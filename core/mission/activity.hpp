@@ -12,8 +12,8 @@ namespace skein::mission {
 struct PartStates {
   Failsafe::Action failsafe = Failsafe::Action::none;
   bool piloted = false;  ///< others fly it
-  bool lands = false;   ///< comes down by order, or has
-  bool landed = false;  ///< and is on the ground
+  bool lands = false;    ///< comes down by order, or has
+  bool landed = false;   ///< and is on the ground
   bool has_task = false;
   bool leads = false;
   bool monitors = false;  ///< leads, and waits before its next round

@@ -7,7 +7,7 @@
 namespace skein::mission {
 namespace {
 
-const Vec2 kFlownTo_m{-300.0, 200.0};
+const Vec2 kFlownTo{-300.0, 200.0};
 
 coalition::Announcement call_at(double now_s) {
   coalition::Announcement call;
@@ -42,7 +42,7 @@ TEST(Piloted, NeitherBidsNorSearchesUntilItIsGivenBackWhereItIs) {
   EXPECT_EQ(std::get<event::BidDeclined>(declined->body).why.reason, coalition::Reason::piloted);
 
   vehicle.fly(20.0);
-  vehicle.beside_m = kFlownTo_m;
+  vehicle.beside_m = kFlownTo;
   vehicle.fly(1.0);
   const Vec2 here{vehicle.state.x_m, vehicle.state.y_m};
   vehicle.beside_m = {0.0, 0.0};  // from here on it is where its plan has it
@@ -76,7 +76,7 @@ TEST(Piloted, WhatWasOrderedIsObeyedFromWhereItIsGivenBack) {
     vehicle.be_piloted(true);
     vehicle.order(order);
     vehicle.fly(30.0);
-    vehicle.beside_m = kFlownTo_m;
+    vehicle.beside_m = kFlownTo;
     vehicle.fly(1.0);
     const Vec2 here{vehicle.state.x_m, vehicle.state.y_m};
     vehicle.beside_m = {0.0, 0.0};

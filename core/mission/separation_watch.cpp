@@ -240,7 +240,8 @@ bool SeparationWatch::can_be_below(const VehicleState& own, const Other& other, 
   const double from_s = std::max(0.0, below_m - params_.separation_vertical_m) / kSinksMost_mps;
   const double to_s = std::min(to_seconds(params_.separation_look_ahead),
                                (below_m + params_.separation_vertical_m) / kSinksLeast_mps);
-  for (double s = from_s; s <= to_s; s += kBelowStep_s) {
+  for (int step = 0; from_s + step * kBelowStep_s <= to_s; ++step) {
+    const double s = from_s + step * kBelowStep_s;
     const double turned_m = 0.5 * kTurns_mps2 * (s * s + (s + age_s) * (s + age_s));
     const Vec2 apart = position_at(other.state, age_s + s) - position_at(own, s);
     if (apart.norm() < params_.separation_horizontal_m + turned_m) return true;

@@ -89,8 +89,8 @@ class VehicleAgent::Impl {
   CommandFilter commands_;
   std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   bool lands_ = false;                         ///< by order, once it is at home
-  std::optional<Instant> may_land_at_;         ///< at home, where the air below is free
   bool told_barred_ = false;                   ///< that a hazard keeps it from that
+  std::optional<Instant> may_land_at_;         ///< at home, where the air below is free
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };
 

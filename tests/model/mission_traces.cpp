@@ -446,8 +446,8 @@ int main(int argc, char** argv) {
       return 2;
     }
     // The model tells vehicles apart by their numbers.
-    const bool used_twice =
-        std::ranges::any_of(mission->vehicles, [](const auto& v) { return v.flies_as.has_value(); });
+    const bool used_twice = std::ranges::any_of(
+        mission->vehicles, [](const auto& v) { return v.flies_as.has_value(); });
     if (used_twice) continue;
     skein::Tracer tracer{*mission};
     (void)skein::hil::simulate_team(*mission, tracer.observer());

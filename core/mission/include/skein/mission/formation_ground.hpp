@@ -139,19 +139,19 @@ class FormationGround {
   std::map<VehicleId, Member> members_;
   std::optional<FormationOrder> order_;
   std::optional<formation::Change> change_;
-  std::uint32_t number_ = 0;
-  Instant send_next_{};
-  bool correcting_ = false;              ///< the newest change is against drift only
   std::vector<formation::Change> sent_;  ///< that somebody may fly yet
-  std::uint32_t recalled_ = 0;           ///< the newest change of an earlier process
-  bool succeeds_ = false;                ///< somebody flies what this one does not know
-  bool give_again_ = false;              ///< somebody was lost in the change, or has not begun it
-  bool is_sent_ = false;     ///< the newest change, until all know it, or it is given up
-  bool makes_room_ = false;  ///< the newest change leads one out of the others' way only
-  bool withdrawn_ = false;   ///< nobody begins the newest change any more
+  Instant send_next_{};
+  std::uint32_t number_ = 0;
+  std::uint32_t recalled_ = 0;  ///< the newest change of an earlier process
+  bool correcting_ = false;     ///< the newest change is against drift only
+  bool succeeds_ = false;       ///< somebody flies what this one does not know
+  bool give_again_ = false;     ///< somebody was lost in the change, or has not begun it
+  bool is_sent_ = false;        ///< the newest change, until all know it, or it is given up
+  bool makes_room_ = false;     ///< the newest change leads one out of the others' way only
+  bool withdrawn_ = false;      ///< nobody begins the newest change any more
+  bool told_refused_ = false;   ///< that the order cannot be given again
+  bool told_off_ = false;       ///< who is off its place
   std::optional<Instant> stuck_since_;
-  bool told_refused_ = false;          ///< that the order cannot be given again
-  bool told_off_ = false;              ///< who is off its place
   std::optional<Instant> near_since_;  ///< all within tolerance
   std::optional<Instant> off_since_;   ///< somebody is beside where it was led to its end
   std::optional<Instant> held_since_;
