@@ -167,13 +167,13 @@ constexpr int kPacesTried = 8;
 /// What a plan may be off by where it begins: some metres.
 constexpr Duration kBeginsOff = std::chrono::milliseconds{300};
 
-/// At its begin now, and at on_time_m when it is to be there: by its pace. What that cannot make up
+/// Where it begins, and at on_time_m when it is to be there: by its pace. What that cannot make up
 /// for, the plan is off by where it begins, and for the rest at on_time_m.
-void be_on_time(TimedPath& timed, Instant now, Instant on_time_at) {
+void be_on_time(TimedPath& timed, Instant on_time_at) {
   const double mean_mps = timed.speed_mps;
-  const double wanted_s = to_seconds(on_time_at - now);
+  const double wanted_s = to_seconds(on_time_at - timed.start_time);
   for (int i = 0; wanted_s > 0.0 && i < kPacesTried; ++i) {
-    const double takes_s = to_seconds(timed.time_at(timed.on_time_m) - timed.time_at(0.0));
+    const double takes_s = to_seconds(timed.time_at(timed.on_time_m) - timed.start_time);
     timed.speed_mps = std::clamp(timed.speed_mps * takes_s / wanted_s,
                                  (1.0 - kPaceShare) * mean_mps, (1.0 + kPaceShare) * mean_mps);
   }
@@ -195,12 +195,10 @@ bool Flight::continue_with(Instant at, const Path& next, double tail_curvature_p
   if (!timed.path.append(next)) return false;
   const double before_m = before->length_m();
   if (pace && pace->on_time_m > 0.0) timed.on_time_m = before_m + pace->on_time_m;
-  // Where `next` begins it is on time.
-  if (timed.speed_mps != old.speed_mps || timed.has_wind() || old.has_wind()) {
-    timed.start_time = at - (timed.time_at(before_m) - now);
-  }
   if (timed.has_wind() && pace && pace->on_time_at) {
-    be_on_time(timed, now, *pace->on_time_at);
+    be_on_time(timed, *pace->on_time_at);
+  } else if (timed.speed_mps != old.speed_mps || timed.has_wind() || old.has_wind()) {
+    timed.start_time = at - (timed.time_at(before_m) - now);  // where `next` begins it is on time
   }
   take_up(timed, now);
   return true;
