@@ -53,7 +53,7 @@ void CanFlightController::tell_mode() {
   }
   Mode mode;
   text.copy(mode.text.data(), mode.text.size() - 1);
-  if (mode.text == told_mode_.text) return;
+  if (mode == told_mode_) return;
   told_mode_ = mode;
   mode_.write(mode);
 }

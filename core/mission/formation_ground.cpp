@@ -62,9 +62,8 @@ std::string metres_of(double m) {
   return text.data();
 }
 
-/// Corners of a mover's way; points of one that goes around.
-std::vector<Vec3> way_of(const Change& change, const formation::ChangeMotion& motion,
-                         std::size_t mover) {
+/// Corners of a mover's way; points of one that goes around, by the motion.
+std::vector<Vec3> way_of(const Change& change, const ChangeMotion& motion, std::size_t mover) {
   const auto& points = change.movers[mover].points;
   if (!change.roundabout || change.movers[mover].level == 0) return {points.begin(), points.end()};
   constexpr double kApart_m = 0.5;
@@ -170,7 +169,7 @@ Result<void> FormationGround::within_heights(const std::vector<Transfer>& transf
 Result<void> FormationGround::within_fence(const Change& change) const {
   const Fence& fence = config_.fence;
   if (!fence.exists()) return {};
-  const formation::ChangeMotion motion{change};
+  const ChangeMotion motion = change.roundabout ? ChangeMotion{change} : ChangeMotion{};
   for (std::size_t m = 0; m < change.movers.size(); ++m) {
     const formation::Mover& mover = change.movers[m];
     const std::vector<Vec3> way = way_of(change, motion, m);

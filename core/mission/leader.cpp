@@ -217,7 +217,7 @@ void Leader::answer(const Initiator::AllocationWanted& wanted, Instant /*now*/) 
   problem.open_tasks = wanted.tasks;
   if (rounds_failed_ >= kRoundsForAll) leave_for_later(problem.open_tasks, wanted.bids);
   problem.seed = seed_of(wanted.round);
-  problem.hazards = ownship_.hazards_around_tasks();
+  problem.hazards = planning::with_room_for_arcs(ownship_.hazards());
   problem.start = wanted.formed_at;
   Duration approach{};
   for (const auto& bid : wanted.bids) approach = std::max(approach, coalition::approach_time(bid));

@@ -19,8 +19,6 @@ constexpr double kOnTrackM = 30.0;
 constexpr Duration kLeadIn = std::chrono::seconds{3};
 /// In so much a plane has turned round.
 constexpr Duration kFenceAhead = std::chrono::seconds{8};
-/// An arc that touches a hazard is flown so far within it, at most.
-constexpr double kFlownOffArc_m = 1.0;
 /// How close a vehicle must be to its route to take it up.
 constexpr double kAtRouteM = 50.0;
 /// A copter that is first seen so near to its height flies.
@@ -270,17 +268,11 @@ planning::Candidate Ownship::candidate(const Pose2& pose, Instant at) const {
           loads_};
 }
 
-std::vector<Hazard> Ownship::hazards_around_tasks() const {
-  std::vector<Hazard> wide = hazards();
-  for (Hazard& hazard : wide) hazard.radius_m += kFlownOffArc_m;
-  return wide;
-}
-
 Result<planning::TaskPlan> Ownship::plan_task(const planning::Candidate& self, Instant start,
                                               const Site& site,
                                               const TaskAssignment& assignment) const {
-  auto plan =
-      planning::plan_task(config_.planning, self, start, site, assignment, hazards_around_tasks());
+  auto plan = planning::plan_task(config_.planning, self, start, site, assignment,
+                                  planning::with_room_for_arcs(hazards()));
   if (!plan || turn_room_.wind_mps() == Vec2{0.0, 0.0}) return plan;
   const bool delivers = assignment.task.kind == TaskKind::deliver;
   plan->timed = in_wind(plan->timed);

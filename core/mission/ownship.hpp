@@ -36,9 +36,6 @@ class Ownship {
   [[nodiscard]] const VehicleSpec& spec() const { return config_.vehicle; }
   [[nodiscard]] const VehicleState& state() const { return state_; }
   [[nodiscard]] const std::vector<Hazard>& hazards() const { return hazards_.all(); }
-  /// The same, a metre larger, for tasks: an arc that touches a hazard is flown some centimetres
-  /// within it.
-  [[nodiscard]] std::vector<Hazard> hazards_around_tasks() const;
   [[nodiscard]] std::uint8_t loads() const { return loads_; }
   /// Of the turns that are planned now: the vehicle's, or wider where the wind takes that.
   [[nodiscard]] double planning_radius_m() const { return turn_room_.radius_m(); }

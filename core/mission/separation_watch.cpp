@@ -323,7 +323,7 @@ void SeparationWatch::end_when_clear(VehicleId id, Other& other, bool breaks, In
 void SeparationWatch::decide(VehicleId id, Other& other, const Self& self, const Approach& a,
                              Instant now) {
   if (other.yields) return;
-  if (piloted_) {
+  if (self.piloted) {
     other.gives_way = other.piloted ? VehicleId{} : id;
     return;
   }

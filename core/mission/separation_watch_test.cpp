@@ -52,7 +52,9 @@ class Flyer {
     state.z_m += sinks_mps > 0.0 ? -sinks_mps * kSeconds : (wanted_m - state.z_m) * kSeconds / 3.0;
   }
   void decide(Instant now) {
-    if (watch.watches()) watch.step({state, activity}, now);
+    const bool piloted = detail == ActivityDetail::piloted;
+    if (watch.watches())
+      watch.step({.state = state, .activity = activity, .piloted = piloted}, now);
     while (const auto news = watch.poll_event()) {
       if (const auto* warning = std::get_if<event::SeparationWarning>(&*news)) {
         warnings.push_back(*warning);
@@ -259,7 +261,6 @@ TEST(SeparationWatch, WhoExecutesATaskKeepsItsHeight) {
 TEST(SeparationWatch, WhoIsPilotedIsGivenWayTo) {
   Sky sky = head_on();
   sky.flyers[1].can_change_height = false;
-  sky.flyers[1].watch.on_piloted(true);
   sky.flyers[1].detail = ActivityDetail::piloted;
   sky.fly(60.0);
   EXPECT_TRUE(sky.flyers[0].gave_way);

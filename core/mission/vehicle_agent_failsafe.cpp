@@ -74,7 +74,6 @@ void VehicleAgent::Impl::on_telemetry(const Telemetry& message, Instant now) {
 
 /// What was flown before is nowhere near: who is given back goes on from where it is.
 void VehicleAgent::Impl::on_piloted(bool piloted, Instant now) {
-  separation_.on_piloted(piloted);
   const bool is_given_back = failsafe_.facts().piloted && !piloted;
   const auto* response = failsafe_.update(now, {.piloted = piloted});
   const bool stands = ownship_.landing() && ownship_.state().on_ground();
@@ -116,7 +115,12 @@ void VehicleAgent::Impl::watch_traffic(Instant now) {
 /// keeps separate there.
 void VehicleAgent::Impl::watch_separation(Instant now) {
   if (!separation_.watches() && !traffic_.gives_way()) return;
-  separation_.step({ownship_.state(), activity(), traffic_.height_m(), traffic_.room()}, now);
+  separation_.step({.state = ownship_.state(),
+                    .activity = activity(),
+                    .height_m = traffic_.height_m(),
+                    .room = traffic_.room(),
+                    .piloted = failsafe_.facts().piloted},
+                   now);
   while (auto news = separation_.poll_event()) outbox.report(*std::move(news), {}, {}, now);
   ownship_.flight().change_height(separation_.offset_m(), now);
 }

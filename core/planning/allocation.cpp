@@ -22,8 +22,6 @@ namespace skein::planning {
 namespace {
 
 constexpr double kLeft = 1.0;
-/// Around an arc that touches a hazard an aircraft is flown some centimetres into it.
-constexpr double kArcRoom_m = 1.0;
 constexpr std::array<std::string_view, static_cast<std::size_t>(AllocationMethod::count)>
     kMethodNames{"best", "exact", "earliest", "colony", "polynomial", "greedy"};
 
@@ -150,6 +148,13 @@ Result<TaskPlan> plan_task(const AllocationParams& params, const Candidate& vehi
   return assemble(*path, leg->task, start, vehicle.speed_mps, vehicle.planning_radius_m);
 }
 
+std::vector<Hazard> with_room_for_arcs(std::span<const Hazard> hazards) {
+  constexpr double kRoom_m = 1.0;
+  std::vector<Hazard> wide{hazards.begin(), hazards.end()};
+  for (Hazard& circle : wide) circle.radius_m += kRoom_m;
+  return wide;
+}
+
 Result<TaskPlan> plan_survey(const AllocationParams& params, const VehicleSpec& vehicle,
                              const Pose2& from, Instant start, const Site& site,
                              std::span<const Hazard> hazards) {
@@ -166,9 +171,7 @@ Result<TaskPlan> plan_survey(const AllocationParams& params, const VehicleSpec& 
     if (other && (!leg || other->shortest_m < leg->shortest_m)) leg = std::move(other);
     return leg;
   };
-  std::vector<Hazard> wide{hazards.begin(), hazards.end()};
-  for (Hazard& circle : wide) circle.radius_m += kArcRoom_m;
-  Result<Leg> leg = leg_among(wide);
+  Result<Leg> leg = leg_among(with_room_for_arcs(hazards));
   if (!leg) leg = leg_among(hazards);
   if (!leg) return leg.error();
   const auto path = shortest_clear_path(params.avoidance, from, leg->task.entry, radius_m, hazards);

@@ -156,8 +156,7 @@ bool Aircraft::can_hold(const std::vector<Hazard>& hazards) const {
 }
 
 void Aircraft::end_program(Instant now, const std::vector<Hazard>& hazards) {
-  node_.reset();
-  piloted_ = false;
+  end_with_program();
   ++life_;
   if (holds_orbit()) hold_orbit(now, hazards);
 }

@@ -204,8 +204,7 @@ constexpr Raise kBattery = [](FaultParams& p) { raise(p.batteries, 2); };
 constexpr Raise kWind = [](FaultParams& p) { raise(p.wind_mps, 5.0); };
 constexpr Raise kNarrow = [](FaultParams& p) { p.narrow = true; };
 
-/// Of `mixed`, what more than one mission in so many has leaves too few vehicles, or too little
-/// air.
+/// Of what takes vehicles, or the air, from the team: more of it would leave too little.
 constexpr double kRare = 0.15;
 
 /// `mixed` draws from them in this order.
@@ -244,6 +243,7 @@ constexpr std::array<Raise, 4> kLosing{kClock, kDouble, kAirframe, kBattery};
 void mixed(FaultParams& params, std::uint64_t seed) {
   Random random{seed ^ kMixStream};
   const std::size_t crashes = params.crashes;
+  const std::size_t batteries = params.batteries;
   std::size_t lost_besides = 0;
   // Two are lost at most: with fewer vehicles a leader whose site is beyond them can keep the last
   // one that another site needs.
@@ -254,7 +254,7 @@ void mixed(FaultParams& params, std::uint64_t seed) {
     profile.sites(params);
     if (loses) ++lost_besides;
   }
-  params.batteries = std::min<std::size_t>(params.batteries, 1);
+  params.batteries = std::max(batteries, std::min<std::size_t>(params.batteries, 1));
   params.crashes = std::max(crashes, std::min(params.crashes, kLostMax - lost_besides));
 }
 
@@ -592,9 +592,11 @@ void draw_further(Random& random, TeamMission& mission, const FaultParams& param
     const Instant at = Instant{} + between(random, seconds{5}, params.phase);
     mission.faults.push_back({{.not_before = at}, {}, CommandTaken{}});
   }
-  for (Fault& fault : mission.faults) {
-    auto* cut = params.taken_over > 0 ? std::get_if<radio::Cut>(&fault.what) : nullptr;
-    if (cut != nullptr && random.chance(0.3)) cut->groups.front().push_back(kSecondStation);
+  if (params.taken_over > 0) {
+    for (Fault& fault : mission.faults) {
+      auto* cut = std::get_if<radio::Cut>(&fault.what);
+      if (cut != nullptr && random.chance(0.3)) cut->groups.front().push_back(kSecondStation);
+    }
   }
   for (std::size_t n = count(random, params.pilots); n > 0; --n) {
     Fault taken = draw_crash(random, params.phase, false);

@@ -179,8 +179,9 @@ void GroundStation::record(const mission::Message& message, VehicleId sender, In
 }
 
 void GroundStation::on_timeout(Instant now) {
-  if (node_) keep_command(now + clock_);
-  if (node_) node_->on_timeout(now + clock_);
+  if (!node_) return;
+  keep_command(now + clock_);
+  node_->on_timeout(now + clock_);
   if (desk_) desk_->on_timeout(now + clock_);
 }
 

@@ -104,7 +104,7 @@ class Team {
     gone_at_.resize(programs);
     stands_until_.resize(programs, Instant::min());
     give_back_at_.resize(vehicles_.size(), Instant::max());
-    for (std::size_t i = 0; i < grounds_.size(); ++i) start_ground(i, Instant{});
+    for (GroundStation& ground : grounds_) ground.start(Instant{});
     for (const auto& h : mission.hazards) {
       if (h.known_from <= Instant{}) hazards_.push_back(h.hazard);
     }
@@ -175,7 +175,7 @@ class Team {
       if (!restart_at_[i] || now < *restart_at_[i]) continue;
       restart_at_[i].reset();
       if (i == ether_.ground()) {
-        start_ground(0, now);
+        grounds_.front().start(now);
         result_.ground_warning.reset();
       } else {
         vehicles_[i].start_program(hazards_, now);
@@ -266,11 +266,6 @@ class Team {
                 std::make_shared<const Content>(mission::Message{detection}));
       detection.position.x() += 8.0;
     }
-  }
-
-  void start_ground(std::size_t i, Instant now) {
-    grounds_[i].start(now);
-    ether_.start(ether_.ground() + i, grounds_[i].start_number());
   }
 
   /// Whose operators order what is ordered: the ground station that has the command.

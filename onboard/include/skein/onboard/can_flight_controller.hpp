@@ -58,6 +58,7 @@ class CanFlightController final : public hal::FlightController {
  private:
   struct Mode {
     std::array<char, 64> text{};  ///< ends with a zero
+    friend bool operator==(const Mode&, const Mode&) = default;
   };
   struct Command {
     Demand demand;

@@ -63,6 +63,7 @@ class SeparationWatch {
     /// goes on beyond for those that follow it.
     std::optional<double> height_m = {};
     HeightBand room = {};
+    bool piloted = false;  ///< others fly it
   };
 
   /// `layer_m`: the vehicle's own height, above the origin. Another program under its number is
@@ -84,8 +85,6 @@ class SeparationWatch {
   }
 
   void on_telemetry(const Telemetry& other, const VehicleState& own, Instant now);
-  /// From now on others fly this vehicle, or its program again.
-  void on_piloted(bool piloted) { piloted_ = piloted; }
   void step(const Self& self, Instant now);
 
   /// It is about to come down, and looks at who is below, until it is told that it is not.
@@ -162,7 +161,6 @@ class SeparationWatch {
   InstanceId instance_;
   double layer_m_;
   std::map<VehicleId, Other> known_;
-  bool piloted_ = false;
   std::optional<double> target_;  ///< height, to give way
   double asked_m_;                ///< where it is to fly: its layer, or Self::height_m
   double base_m_;                 ///< the same, with room for those that follow

@@ -107,6 +107,10 @@ inline constexpr double kValueTolerance = 1e-6;
                                           const AllocationProblem& problem,
                                           const PlanningBudget& budget = {});
 
+/// The same, a metre larger: around an arc that touches a hazard an aircraft is flown some
+/// centimetres into it.
+[[nodiscard]] std::vector<Hazard> with_room_for_arcs(std::span<const Hazard> hazards);
+
 /// The path of one assignment, from where the vehicle is at `start`: to the task's entry, timed,
 /// and the task's run. `gate_m` is where the run begins: a delivery does not pass it unauthorised.
 struct TaskPlan {
