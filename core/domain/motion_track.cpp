@@ -10,6 +10,14 @@ Vec3 vector_of(const std::array<double, 3>& a) { return {a[0], a[1], a[2]}; }
 
 }  // namespace
 
+MotionTrack MotionTrack::standing_at(const Vec3& place, Instant since) {
+  MotionTrack track;
+  track.start = since;
+  track.count = 1;
+  track.points.front().position_m = {place.x(), place.y(), place.z()};
+  return track;
+}
+
 MotionTrack::Moment MotionTrack::at(Instant t) const {
   SKEIN_ASSERT(count > 0 && count <= kPointsMax);
   if (t < start) return {.position_m = vector_of(points[0].position_m)};

@@ -2,6 +2,7 @@
 #include "skein/mission/formation_agent.hpp"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "skein/domain/set_down.hpp"
@@ -61,15 +62,16 @@ void FormationAgent::on_message(const Message& message, VehicleId sender, Instan
   if (const auto* change = std::get_if<Change>(&message)) {
     if (sender == kGroundStation) on_change(*change, now);
   } else if (const auto* status = std::get_if<FormationStatus>(&message)) {
-    if (status->vehicle == sender) on_status(*status, now);
+    if (status->vehicle != sender) return;
+    look_out_for(*status);
+    on_status(*status, now);
   } else if (const auto* command = std::get_if<Command>(&message)) {
     if (sender == kGroundStation) on_command(*command, now);
   }
 }
 
 void FormationAgent::on_change(const Change& change, Instant now) {
-  const std::uint32_t known = change_ ? change_->number : 0;
-  if (change.number <= known || !state_) return;
+  if (change.number <= number_ || !state_) return;
   if (!valid(change)) {
     ++bad_messages_;
     return;
@@ -83,6 +85,8 @@ void FormationAgent::on_change(const Change& change, Instant now) {
     return;
   }
   change_ = change;
+  number_ = change.number;
+  rests_at_.reset();
   if (config_.avoidance == formation::Avoidance::field) {
     execution_ = std::make_unique<formation::FieldFlight>(change, *self, config_.field, now);
   } else {
@@ -103,6 +107,7 @@ std::optional<event::ChangeRefusal> FormationAgent::why_not(const Change& change
                                                             std::size_t self) const {
   using enum event::ChangeRefusal;
   if (bar_ != Bar::none) return setup_differs;
+  if (piloted_) return obeys_others;
   if (change_ && !execution_->at_rest()) return another_is_flown;
   const auto& limits = change.limits;
   if (limits.speed_mps > config_.limits.speed_mps ||
@@ -110,8 +115,7 @@ std::optional<event::ChangeRefusal> FormationAgent::why_not(const Change& change
       limits.jerk_mps3 > config_.limits.jerk_mps3) {
     return too_fast;
   }
-  const Vec3 from = change_ ? execution_->reference(next_slot_).position_m : here(*state_);
-  const Vec3 apart = from - change.movers[self].points.front();
+  const Vec3 apart = reference(next_slot_) - change.movers[self].points.front();
   if (apart.norm() > config_.start_tolerance_m) return begins_elsewhere;
   return std::nullopt;
 }
@@ -134,6 +138,39 @@ void FormationAgent::on_status(const FormationStatus& status, Instant now) {
   }
 }
 
+/// Who is where nobody expects it is kept clear of by where it is.
+void FormationAgent::look_out_for(const FormationStatus& status) {
+  if (status.progress.off_m > config_.passage.tolerance_m) {
+    strays_[status.vehicle] = status.position_m;
+  } else if (!strays_.empty()) {
+    strays_.erase(status.vehicle);
+  }
+}
+
+/// What it flies now, should it brake, leads too near to one of them, and nearer than it is.
+bool FormationAgent::nears_stray() const {
+  if (config_.avoidance != formation::Avoidance::passage) return false;
+  const formation::Separation& apart = change_->separation;
+  const double allowed_m = config_.passage.tolerance_m;
+  const double until_next_m = change_->limits.speed_mps * to_seconds(2 * formation::kSlot);
+  const double least_m =
+      std::min(apart.horizontal_m - allowed_m, apart.horizontal_m - 2.0 * allowed_m + until_next_m);
+  const double factor = height_factor(apart);
+  return std::ranges::any_of(strays_, [&](const auto& stray) {
+    const auto distance_m = [&](const MotionTrack::Point& point) {
+      Vec3 between = Vec3{point.position_m.data()} - stray.second;
+      between.z() *= factor;
+      return between.norm();
+    };
+    const auto points = std::span{track_->points}.first(track_->count);
+    const double now_m = distance_m(points.front());
+    return std::ranges::any_of(points, [&](const MotionTrack::Point& point) {
+      const double then_m = distance_m(point);
+      return then_m < least_m && then_m < now_m;
+    });
+  });
+}
+
 void FormationAgent::on_command(const Command& command, Instant now) {
   if (!commands_.take(command, config_.vehicle)) return;
   // What else there is, is not for it: it knows no way home (GroundAgent::command()).
@@ -149,16 +186,37 @@ void FormationAgent::on_bar(Bar bar, Instant /*now*/) {
   if (execution_) execution_->hold(waits());
 }
 
+void FormationAgent::on_piloted(bool piloted, Instant now) {
+  if (std::exchange(piloted_, piloted) == piloted || !state_) return;
+  if (piloted) {
+    if (!change_ && !rests_at_) rests_at_ = here(*state_);
+    if (execution_) execution_->hold(waits());
+  } else {
+    rests_at_ = here(*state_);
+    change_.reset();
+    execution_.reset();
+    not_begun_.clear();
+    nears_stray_ = false;
+    track_ = MotionTrack::standing_at(*rests_at_, now);
+  }
+  step(now);
+}
+
 void FormationAgent::on_timeout(Instant now) {
   if (now >= next_slot_) step(now);
 }
 
+Vec3 FormationAgent::reference(Instant now) const {
+  if (change_) return execution_->reference(now).position_m;
+  return rests_at_.value_or(here(*state_));
+}
+
 double FormationAgent::off_m(Instant now) const {
-  if (!change_ || !state_) return 0.0;
+  if (!state_) return 0.0;
   // Where it was when the state was measured.
   const Instant then = std::min(now, std::max(state_->time, now - formation::kSlot));
-  Vec3 place = execution_->reference(then).position_m;
-  const auto self = formation::mover_of(*change_, config_.vehicle);
+  Vec3 place = reference(then);
+  const auto self = change_ ? formation::mover_of(*change_, config_.vehicle) : std::nullopt;
   if (self && change_->movers[*self].points.back().z() <= kGround_m) {
     // On its way down: as its autopilot leads it, or as its place sinks.
     const double led_m = led_down({.height_m = place.z()}).height_m;
@@ -174,6 +232,8 @@ void FormationAgent::step(Instant now) {
     execution_->set_off(off);
     execution_->step(now);
     track_ = execution_->track();
+    nears_stray_ = nears_stray();
+    execution_->hold(waits());
     if (!arrived_ && execution_->finished()) {
       arrived_ = true;
       report(event::PlaceReached{change_->number}, now);
@@ -185,10 +245,9 @@ void FormationAgent::step(Instant now) {
   FormationStatus status;
   status.vehicle = config_.vehicle;
   status.position_m = here(*state_);
-  status.reference_m = status.position_m;
+  status.reference_m = reference(now);
   if (change_) {
     status.progress = execution_->progress();
-    status.reference_m = execution_->reference(now).position_m;
     status.at_rest = execution_->at_rest();
   }
   status.progress.off_m = off;
@@ -227,7 +286,7 @@ Telemetry FormationAgent::telemetry() const {
   telemetry.instance = config_.instance;
   if (state_) telemetry.state = *state_;
   telemetry.range_left_m = range_.left_m();
-  const bool moving = change_ && !execution_->finished();
+  const bool moving = change_ && !piloted_ && !execution_->finished();
   telemetry.activity = moving ? Activity::forming : Activity::holding;
   telemetry.detail = detail(moving);
   telemetry.plan_number = change_ ? change_->number : 0;
@@ -235,6 +294,7 @@ Telemetry FormationAgent::telemetry() const {
 }
 
 ActivityDetail FormationAgent::detail(bool moving) const {
+  if (piloted_) return ActivityDetail::piloted;
   if (!moving && state_ && stands(*state_)) return ActivityDetail::on_ground;
   if (held_) return ActivityDetail::ordered;
   if (bar_ != Bar::none) return ActivityDetail::barred;

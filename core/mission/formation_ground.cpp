@@ -282,6 +282,7 @@ std::optional<std::size_t> FormationGround::may_fly(const Change& change, Vehicl
 /// On its way to the goal of the change that it was heard in, or of one that it may have taken up
 /// since.
 std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& member) const {
+  if (member.piloted) return {member.status.position_m};
   const Vec3& seen = member.status.reference_m;
   std::vector<Vec3> places{seen};
   if (member.status.progress.off_m > kAstray_m / 2.0) places.push_back(member.status.position_m);
@@ -417,6 +418,18 @@ void FormationGround::recall(const Message& message, VehicleId sender) {
 void FormationGround::on_message(const Message& message, Instant now) {
   if (const auto* status = std::get_if<FormationStatus>(&message)) {
     if (contains(config_.vehicles, status->vehicle)) on_status(*status, now);
+  } else if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
+    on_telemetry(*telemetry, now);
+  }
+}
+
+void FormationGround::on_telemetry(const Telemetry& telemetry, Instant now) {
+  const auto found = members_.find(telemetry.vehicle);
+  if (found == members_.end()) return;
+  Member& member = found->second;
+  member.piloted = telemetry.detail == ActivityDetail::piloted;
+  if (member.piloted && !member.lost) {
+    lose(telemetry.vehicle, member, FormationNews::astray, now);
   }
 }
 
@@ -430,7 +443,8 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
   const auto [found, is_new] = members_.try_emplace(status.vehicle);
   Member& member = found->second;
   member.status = status;
-  if (status.progress.off_m > (member.lost ? 0.5 : 1.0) * kAstray_m) {
+  const bool astray = status.progress.off_m > (member.lost ? 0.5 : 1.0) * kAstray_m;
+  if (member.piloted || astray) {
     if (!member.lost) lose(status.vehicle, member, FormationNews::astray, now);
     return;
   }

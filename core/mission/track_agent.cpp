@@ -98,7 +98,7 @@ std::optional<event::ChangeRefusal> TrackAgent::why_not(const TrackFlight& fligh
   using enum event::ChangeRefusal;
   const TimedPath& timed = flight.plan.timed;
   if (bar_ != Bar::none) return setup_differs;
-  if (ordered_ || range_spent_) return obeys_others;
+  if (ordered_ || range_spent_ || piloted_) return obeys_others;
   double fastest = 0.0;
   for (const double pace : timed.paces) fastest = std::max(fastest, pace * timed.speed_mps);
   if (fastest > config_.vehicle.speed_max_mps) return too_fast;
@@ -141,6 +141,20 @@ void TrackAgent::on_bar(Bar bar, Instant now) {
   leave();
 }
 
+/// What was flown before is nowhere near: who is given back goes on from where it is.
+void TrackAgent::on_piloted(bool piloted, Instant now) {
+  if (std::exchange(piloted_, piloted) == piloted || !flight_->started()) return;
+  leave();
+  const bool homes = flight_->homing();
+  if (!piloted) flight_->begin_at(state_->pose(), now);
+  if (homes) {
+    flight_->fly_home(hazards_.all(), now);
+  } else {
+    flight_->hold(hazards_.all(), now);
+  }
+  step(now);
+}
+
 void TrackAgent::on_hazard(const HazardReport& told, Instant now) {
   const Hazard& hazard = told.hazard;
   if (told.withdrawn) {
@@ -177,7 +191,7 @@ void TrackAgent::step(Instant now) {
 
 /// What is left is for the way home, or for nothing.
 void TrackAgent::watch_range(Instant now) {
-  if (range_spent_ || now < next_range_) return;
+  if (range_spent_ || piloted_ || now < next_range_) return;
   next_range_ = next_multiple(now, kRangePeriod);
   const double home_m = flight_->way_home_m(flight_->pose_at(now), hazards_.all());
   const double left_m = range_left_m() - home_m;
@@ -237,6 +251,7 @@ Telemetry TrackAgent::telemetry() const {
 }
 
 ActivityDetail TrackAgent::detail() const {
+  if (piloted_) return ActivityDetail::piloted;
   if (state_ && state_->on_ground()) return ActivityDetail::on_ground;
   if (!flight_->started()) return ActivityDetail::not_begun;
   if (flight_->at_home(now_)) return ActivityDetail::at_home;

@@ -42,7 +42,7 @@ Result<formation::TrackRequest> TrackGround::request_of(const TrackOrder& order,
   for (const VehicleSpec& spec : config_.planes) {
     formation::TrackPlane plane{spec, {}, 0.0};
     const auto found = members_.find(spec.id);
-    if (found == members_.end() || found->second.lost) {
+    if (found == members_.end() || !found->second.follows()) {
       request.silent.push_back(plane);
       continue;
     }
@@ -181,7 +181,9 @@ void TrackGround::on_message(const Message& message, Instant now) {
     if (ours(report->vehicle)) flies_[report->vehicle] = report->plan;
   } else if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
     const auto member = members_.find(telemetry->vehicle);
-    if (member != members_.end()) member->second.range_left_m = telemetry->range_left_m;
+    if (member == members_.end()) return;
+    member->second.range_left_m = telemetry->range_left_m;
+    member->second.piloted = telemetry->detail == ActivityDetail::piloted;
   } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
     know(*hazard);
   }
@@ -215,7 +217,8 @@ const formation::TrackFlightPlan* TrackGround::flight_of(VehicleId vehicle) cons
 }
 
 bool TrackGround::has_not_begun(VehicleId vehicle, const Member& member) const {
-  return !member.lost && flight_of(vehicle) != nullptr && member.status.progress.change < number_;
+  return member.follows() && flight_of(vehicle) != nullptr &&
+         member.status.progress.change < number_;
 }
 
 bool TrackGround::on_track(Instant now) const {
@@ -277,7 +280,7 @@ void TrackGround::judge_places(Instant now) {
   std::optional<Instant> last;
   for (const auto& flight : planned.flights) {
     const auto found = members_.find(flight.plane.spec.id);
-    if (found == members_.end() || found->second.lost) continue;
+    if (found == members_.end() || !found->second.follows()) continue;
     const Member& member = found->second;
     const bool left =
         member.status.progress.change == number_ && member.status.at_rest && now < planned.ends;

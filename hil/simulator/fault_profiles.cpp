@@ -134,6 +134,12 @@ void restart(Draw& draw) {
   draw.faults.push_back({when, lasts, ProgramsEnd{{draw.anyone()}}});
 }
 
+void taken_by_pilot(Draw& draw) {
+  const When when = draw.in_a_change();
+  const Duration lasts = draw.between(seconds{2}, seconds{60});
+  draw.faults.push_back({when, lasts, PilotsTake{{draw.anyone()}}});
+}
+
 void small_clocks(Draw& draw) {
   for (const VehicleId vehicle : draw.vehicles) {
     draw.faults.push_back({{}, {}, ClockOff{vehicle, draw.between(-kClockMax, kClockMax)}});
@@ -231,7 +237,7 @@ constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
                                Profile{"covered", kCovered},
                                Profile{"double", kDouble, nullptr, kRare},
                                Profile{"airframe", kAirframe, nullptr, kRare},
-                               Profile{"pilot", kPilot, nullptr, kRare},
+                               Profile{"pilot", kPilot, taken_by_pilot, kRare},
                                Profile{"stations", kStations, nullptr, kRare},
                                Profile{"battery", kBattery, nullptr, kRare},
                                Profile{"wind", kWind, nullptr, kRare},

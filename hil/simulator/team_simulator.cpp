@@ -323,7 +323,7 @@ class Team {
       const std::size_t i = ether_.index_of(id);
       const Aircraft& v = vehicles_[i];
       const bool has_word = v.running() && !v.piloted() && !stands_still(i, now);
-      return has_word && v.holds_orbit() && v.can_hold(hazards_);
+      return has_word && v.flying() && v.can_hold(hazards_);
     };
     const Duration lasts = fault.lasts.value_or(Instant::max() - now);
     if (!std::ranges::all_of(who, can)) return false;

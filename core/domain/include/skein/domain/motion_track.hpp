@@ -32,6 +32,9 @@ struct MotionTrack {
   std::uint16_t count = 0;   ///< of the points; at least one
   std::array<Point, kPointsMax> points{};
 
+  /// At rest there.
+  [[nodiscard]] static MotionTrack standing_at(const Vec3& place, Instant since);
+
   /// Cubic between two points; before the first and after the last at rest there. Precondition:
   /// count > 0.
   [[nodiscard]] Moment at(Instant t) const;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -32,7 +33,8 @@ struct FormationAgentConfig {
 /// when, is decided here in every slot, from what the others say of theirs (formation::Execution).
 /// A change is taken up at rest only, and only where the vehicle is. Whatever falls silent, ground
 /// or neighbours, by passage separation holds: the vehicle goes on as far as it may, and waits
-/// there.
+/// there. So it does before whoever is off what it follows, its pilot's among them. What its own
+/// pilot gives back rests where it is, in no change.
 class FormationAgent final : public OnboardAgent {
  public:
   FormationAgent(const FormationAgentConfig& config, Instant now);
@@ -41,6 +43,7 @@ class FormationAgent final : public OnboardAgent {
   void on_message(const Message& message, VehicleId sender, Instant now) override;
   void on_timeout(Instant now) override;
   void on_bar(Bar bar, Instant now) override;
+  void on_piloted(bool piloted, Instant now) override;
 
   [[nodiscard]] std::optional<Message> poll_message() override { return messages_.pop(); }
   /// A new one in every slot, once there is a change.
@@ -58,11 +61,17 @@ class FormationAgent final : public OnboardAgent {
   [[nodiscard]] std::optional<event::ChangeRefusal> why_not(const formation::Change& change,
                                                             std::size_t self) const;
   void on_status(const FormationStatus& status, Instant now);
+  void look_out_for(const FormationStatus& status);
+  [[nodiscard]] bool nears_stray() const;
   void on_command(const Command& command, Instant now);
   void step(Instant now);
   void tell_of_wait(Instant now);
   [[nodiscard]] ActivityDetail detail(bool moving) const;
-  [[nodiscard]] bool waits() const { return held_ || bar_ != Bar::none || !not_begun_.empty(); }
+  [[nodiscard]] bool waits() const {
+    return held_ || piloted_ || bar_ != Bar::none || !not_begun_.empty() || nears_stray_;
+  }
+  /// Where it is led to be; where it is, as long as nobody leads it.
+  [[nodiscard]] Vec3 reference(Instant now) const;
   [[nodiscard]] double off_m(Instant now) const;
   void report(EventBody body, Instant now);
 
@@ -70,15 +79,20 @@ class FormationAgent final : public OnboardAgent {
   RangeBudget range_;
   std::optional<formation::Change> change_;
   std::unique_ptr<formation::Execution> execution_;  ///< of change_; none before the first
+  std::optional<Vec3> rests_at_;  ///< where its pilot took it before a change, or gave it back
   std::optional<VehicleState> state_;
   std::optional<MotionTrack> track_;
+  std::uint32_t number_ = 0;  ///< of the newest change that it has taken up
   Instant next_slot_;
   Instant next_status_;
   std::set<VehicleId> not_begun_;  ///< movers not heard of in the change
   std::optional<Instant> waits_since_;
-  std::uint32_t refused_ = 0;  ///< number of the newest change that it could not take
+  std::uint32_t refused_ = 0;         ///< number of the newest change that it could not take
+  std::map<VehicleId, Vec3> strays_;  ///< who is off what it follows, and where it is
+  bool nears_stray_ = false;
   CommandFilter commands_;
-  bool held_ = false;  ///< by the operator
+  bool held_ = false;     ///< by the operator
+  bool piloted_ = false;  ///< others fly it
   Bar bar_ = Bar::none;
   bool arrived_ = false;
   std::uint64_t bad_messages_ = 0;

@@ -91,7 +91,8 @@ class FormationGround {
     FormationStatus status;
     Instant heard_at{};
     bool heard = false;                 ///< by this process, not only recalled
-    bool lost = false;                  ///< silent, or far from its reference
+    bool lost = false;                  ///< silent, piloted, or far from its reference
+    bool piloted = false;               ///< others fly it, by its telemetry
     std::optional<Instant> arrived_at;  ///< in the newest change
     double place_error_m = 0.0;         ///< from its place; of no meaning on the way
     Vec3 drift_m = Vec3::Zero();        ///< place less position, over the last seconds
@@ -123,6 +124,7 @@ class FormationGround {
   void begin(FormationPreview preview, Instant now);
   void forget_flown();
   void on_status(const FormationStatus& status, Instant now);
+  void on_telemetry(const Telemetry& telemetry, Instant now);
   void find_lost(Instant now);
   void lose(VehicleId vehicle, Member& member, event::FormationNews why, Instant now);
   [[nodiscard]] bool is_led(VehicleId vehicle) const;

@@ -28,8 +28,8 @@ struct TrackAgentConfig {
 /// All decisions of one plane in a formation. Until it is given a flight it orbits where it
 /// started. A flight (TrackFlight) is its whole way, checked by the ground station; it takes it up
 /// only where it begins on what it flies then, and flies it to its end and around the orbit there,
-/// whatever falls silent. Told to hold, and when a hazard comes into its way, it leaves the
-/// formation for an orbit at its own height.
+/// whatever falls silent. Told to hold, when a hazard comes into its way, and when its pilot takes
+/// it, it leaves the formation, for an orbit at its own height.
 class TrackAgent final : public OnboardAgent {
  public:
   TrackAgent(const TrackAgentConfig& config, Instant now);
@@ -41,6 +41,7 @@ class TrackAgent final : public OnboardAgent {
   void on_message(const Message& message, VehicleId sender, Instant now) override;
   void on_timeout(Instant now) override;
   void on_bar(Bar bar, Instant now) override;
+  void on_piloted(bool piloted, Instant now) override;
 
   [[nodiscard]] std::optional<Message> poll_message() override { return messages_.pop(); }
   [[nodiscard]] std::optional<Guidance> poll_guidance() override;
@@ -85,6 +86,7 @@ class TrackAgent final : public OnboardAgent {
   CommandFilter commands_;
   bool ordered_ = false;  ///< to hold or to come home
   Bar bar_ = Bar::none;
+  bool piloted_ = false;  ///< others fly it
   bool arrived_ = false;
   bool range_spent_ = false;
   Instant now_{};

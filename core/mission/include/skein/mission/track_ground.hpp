@@ -40,7 +40,7 @@ struct TrackOrder {
 struct TrackPreview {
   TrackOrder order;
   formation::PlannedTrack planned;
-  std::vector<VehicleId> lost;  ///< who is silent: the others keep to other heights
+  std::vector<VehicleId> lost;  ///< who is silent or piloted: the others keep to other heights
 };
 
 /// The ground station's side of planes in formation, without I/O: plans flights from what the
@@ -73,6 +73,9 @@ class TrackGround {
     FormationStatus status;
     Instant heard_at{};
     bool lost = false;
+    bool piloted = false;  ///< others fly it, by its telemetry
+    /// It flies what it is told, as far as this ground station hears.
+    [[nodiscard]] bool follows() const { return !lost && !piloted; }
     double range_left_m = 0.0;
     std::optional<Instant> arrived_at;  ///< in its newest place
   };
