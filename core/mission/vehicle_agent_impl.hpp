@@ -87,10 +87,10 @@ class VehicleAgent::Impl {
   SeparationWatch separation_;
   TrafficWatch traffic_;
   CommandFilter commands_;
+  std::optional<Instant> may_land_at_;         ///< at home, where the air below is free
   std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   bool lands_ = false;                         ///< by order, once it is at home
   bool told_barred_ = false;                   ///< that a hazard keeps it from that
-  std::optional<Instant> may_land_at_;         ///< at home, where the air below is free
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };
 
