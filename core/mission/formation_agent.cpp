@@ -147,14 +147,15 @@ void FormationAgent::look_out_for(const FormationStatus& status) {
   }
 }
 
-/// What it flies now, should it brake, leads too near to one of them, and nearer than it is.
+/// What it flies now, should it brake, leads too near to one of them, and nearer than it is. What
+/// the vehicle itself may be off is allowed for, what the other is off is known; and no more than
+/// changes keep of who does not move (FormationGround).
 bool FormationAgent::nears_stray() const {
   if (config_.avoidance != formation::Avoidance::passage) return false;
   const formation::Separation& apart = change_->separation;
-  const double allowed_m = config_.passage.tolerance_m;
   const double until_next_m = change_->limits.speed_mps * to_seconds(2 * formation::kSlot);
   const double least_m =
-      std::min(apart.horizontal_m - allowed_m, apart.horizontal_m - 2.0 * allowed_m + until_next_m);
+      std::min(apart.horizontal_m, apart.horizontal_m - config_.passage.tolerance_m + until_next_m);
   const double factor = height_factor(apart);
   return std::ranges::any_of(strays_, [&](const auto& stray) {
     const auto distance_m = [&](const MotionTrack::Point& point) {

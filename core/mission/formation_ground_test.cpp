@@ -40,6 +40,9 @@ class Team {
     v.position = place;
     v.agent = FormationAgent{config, now};
   }
+  void be_piloted(std::size_t index, bool piloted) {
+    vehicles_.at(index).agent.on_piloted(piloted, now);
+  }
   void push_aside(std::size_t index, const Vec3& aside) { vehicles_.at(index).aside = aside; }
   void step() {
     now += formation::kSlot;
@@ -55,6 +58,7 @@ class Team {
       state.z_m = v.position.z();
       v.agent.on_state(state, now);
       while (const auto message = v.agent.poll_message()) hear(*message, v.id);
+      ground_.on_message(v.agent.telemetry(), now);
       static_cast<void>(v.agent.poll_guidance());
       while (v.agent.poll_event()) {
       }
@@ -401,6 +405,43 @@ TEST(FormationGround, AChangeThatIsNotRecalledMayBeFlownByWhoIsSilent) {
   const auto given = team.command(order);
   ASSERT_FALSE(given.ok());
   EXPECT_THAT(given.error().message, HasSubstr("vehicle 2 is silent, where it flew to"));
+}
+
+TEST(FormationGround, WhomItsPilotHasIsKeptClearOfWhereItIsAndTakenAlongOnceItIsBack) {
+  Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.goes_up());
+  const Vec3 aside{-3.0, 1.0, 0.0};
+  const Vec3 there = team.position(1) + aside;
+  team.be_piloted(1, true);
+  team.push_aside(1, aside);
+  ASSERT_TRUE(team.until([&] { return team.ground().members().at({2}).lost; }));
+  EXPECT_EQ(team.warnings(), 1U);
+  const auto given = team.command(line_around(there));
+  ASSERT_TRUE(given.ok()) << given.error().message;
+  EXPECT_EQ(given->lost, std::vector<VehicleId>{{2}});
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  for (const std::size_t index : {0U, 2U}) {
+    EXPECT_NEAR((team.position(index) - there).norm(), 4.0, 1e-6);
+  }
+  team.push_aside(1, {0.0, 0.0, 0.0});
+  team.be_piloted(1, false);
+  ASSERT_TRUE(team.until([&] { return !team.ground().members().at({2}).lost; }));
+  EXPECT_LT((team.position(1) - there).norm(), 1e-6);
+  ASSERT_TRUE(team.command(line_around({0.0, 0.0, 20.0})).ok());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  EXPECT_NEAR(team.position(1).z(), 20.0, 1e-6);
+}
+
+TEST(FormationGround, WhoIsGivenBackIsLedToItsPlaceAgain) {
+  Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.goes_up());
+  const Vec3 place = team.position(1);
+  team.be_piloted(1, true);
+  team.push_aside(1, {4.0, 4.0, 0.0});
+  for (int i = 0; i < 40; ++i) team.step();
+  team.push_aside(1, {0.0, 0.0, 0.0});
+  team.be_piloted(1, false);
+  ASSERT_TRUE(team.until([&] { return (team.position(1) - place).norm() < 1e-6; }));
 }
 
 }  // namespace

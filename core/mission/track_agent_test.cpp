@@ -67,6 +67,19 @@ class Cockpit {
   [[nodiscard]] bool on_straight() const {
     return plan && plan->timed.path.segments.size() == 1 && plan->timed.paces.size() == 2;
   }
+  /// As long as its pilot has it, it is put.
+  void is_piloted(bool piloted) {
+    agent_.on_piloted(piloted, now);
+    drain();
+  }
+  void put(const Pose2& pose) {
+    state_.x_m = pose.x_m;
+    state_.y_m = pose.y_m;
+    state_.heading_rad = state_.course_rad = pose.heading_rad;
+    state_.time = now;
+    agent_.on_state(state_, now);
+    drain();
+  }
   [[nodiscard]] std::uint64_t bad_messages() const { return agent_.counters().bad_messages; }
   void battery(std::uint8_t percent) { state_.battery_percent = percent; }
   [[nodiscard]] double range_left_m() const { return agent_.telemetry().range_left_m; }
@@ -172,6 +185,37 @@ TEST(TrackAgent, HoldsAtOnceAndTakesNothingUpUntilItMayGoOn) {
   cockpit.tell(cockpit.flight(2, 1.0));
   cockpit.fly(2.0);
   EXPECT_TRUE(cockpit.on_straight());
+}
+
+TEST(TrackAgent, LeavesTheFormationWithItsPilotAndGoesOnWhereItIsGivenBack) {
+  for (const bool homes : {false, true}) {
+    Cockpit cockpit;
+    cockpit.fly(2.0);
+    cockpit.tell(cockpit.flight(1, 1.0));
+    cockpit.fly(5.0);
+    ASSERT_TRUE(cockpit.on_straight());
+    cockpit.is_piloted(true);
+    EXPECT_FALSE(cockpit.on_straight());
+    EXPECT_EQ(cockpit.detail(), ActivityDetail::piloted);
+    cockpit.tell(cockpit.flight(2, 1.0));
+    EXPECT_EQ(std::get<event::ChangeRefused>(cockpit.events.back().body).why,
+              event::ChangeRefusal::obeys_others);
+    if (homes) cockpit.tell(Command{{3}, 9000, CommandKind::return_home});
+    const Pose2 there{-700.0, 300.0, 2.0};
+    cockpit.now += std::chrono::seconds{20};
+    cockpit.put(there);
+    cockpit.is_piloted(false);
+    const Pose2 led = cockpit.plan->timed.pose_at(cockpit.now);
+    EXPECT_LT((led.position() - there.position()).norm(), 1e-6);
+    EXPECT_NEAR(led.heading_rad, there.heading_rad, 1e-9);
+    EXPECT_EQ(cockpit.detail(), homes ? ActivityDetail::returning : ActivityDetail::none);
+    cockpit.fly(1.0);
+    EXPECT_TRUE(cockpit.status->at_rest);
+    if (homes) continue;
+    cockpit.tell(cockpit.flight(3, 1.0));
+    cockpit.fly(2.0);
+    EXPECT_TRUE(cockpit.on_straight());
+  }
 }
 
 TEST(TrackAgent, LeavesTheFormationForAHazardInItsWay) {

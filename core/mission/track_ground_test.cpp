@@ -77,6 +77,7 @@ class Team {
   [[nodiscard]] Vec2 at(std::size_t i) const {
     return {planes_[i].state.x_m, planes_[i].state.y_m};
   }
+  void be_piloted(std::size_t i, bool piloted) { planes_[i].agent->on_piloted(piloted, now); }
   void order(std::size_t i, CommandKind kind) {
     planes_[i].agent->on_message(Command{kGroundStation, ++command_, kind}, kGroundStation, now);
   }
@@ -245,6 +246,24 @@ TEST(TrackGround, WhoIsToldToHoldIsMissedByNobody) {
   team.run(10.0);
   team.order(3, CommandKind::hold);
   EXPECT_TRUE(team.until([&] { return team.ground->in_place(); }));
+}
+
+TEST(TrackGround, WhomItsPilotHasIsGivenNoPlaceUntilItIsBack) {
+  Team team{4};
+  team.run(2.0);
+  ASSERT_TRUE(team.ground->command(along(), team.now).ok());
+  team.run(10.0);
+  team.be_piloted(2, true);
+  ASSERT_TRUE(team.until([&] { return team.ground->in_place(); })) << "the others need it not";
+  const auto without = team.ground->preview(along(), team.now);
+  ASSERT_TRUE(without.ok()) << without.error().message;
+  EXPECT_EQ(without->lost, std::vector<VehicleId>{{3}});
+  EXPECT_EQ(without->planned.flights.size(), 3U);
+  team.be_piloted(2, false);
+  team.run(1.0);
+  const auto with = team.ground->preview(along(), team.now);
+  ASSERT_TRUE(with.ok()) << with.error().message;
+  EXPECT_EQ(with->planned.flights.size(), 4U);
 }
 
 }  // namespace
