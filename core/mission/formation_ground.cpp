@@ -450,9 +450,6 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
   }
   if (!is_new && member.lost) {
     warn(FormationNews::back, {status.vehicle}, now);
-    // Nobody is flown to the side from below: who was lost on its way up is led there first.
-    const bool is_below = status.reference_m.z() < config_.rally.centre.z() - kLedTo_m;
-    give_again_ = give_again_ || (is_below && order_ && order_->kind == OrderKind::take_off);
   }
   // A ground station before this one has commanded it.
   succeeds_ = succeeds_ || status.progress.change > number_;

@@ -166,8 +166,6 @@ void Aircraft::taken_by_pilot(Instant now, const std::vector<Hazard>& hazards) {
   if (holds_orbit()) {
     hold_orbit(now, hazards);
     ++numbers_before_;
-  } else {
-    guidance_.emplace(MotionTrack::standing_at({state_.x_m, state_.y_m, state_.z_m}, local(now)));
   }
   tell_notice(true, {.news = AutopilotNews::mode_changed, .detail = "LOITER"}, now);
 }

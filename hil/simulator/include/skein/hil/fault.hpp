@@ -104,8 +104,8 @@ struct ProgramsStall {
   std::uint64_t pick = 0;
 };
 
-/// Pilots take aircraft, and keep them where they are, on their wings in circles; the operator
-/// gives them back where the fault ends. Empty: as with ProgramsEnd. In virtual time.
+/// Pilots take aircraft, and keep them where they are, in an orbit or at rest; the operator gives
+/// them back where the fault ends. Empty: as with ProgramsEnd. In virtual time.
 struct PilotsTake {
   std::vector<VehicleId> who;
   std::uint64_t pick = 0;
