@@ -427,14 +427,16 @@ TEST(FormationGround, WhomItsPilotHasIsKeptClearOfWhereItIsAndTakenAlongOnceItIs
   team.be_piloted(1, false);
   ASSERT_TRUE(team.until([&] { return !team.ground().members().at({2}).lost; }));
   EXPECT_LT((team.position(1) - there).norm(), 1e-6);
-  ASSERT_TRUE(team.command(line_around({0.0, 0.0, 20.0})).ok());
+  ASSERT_TRUE(team.command({.kind = OrderKind::rally}).ok());
   ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
-  EXPECT_NEAR(team.position(1).z(), 20.0, 1e-6);
+  EXPECT_GT((team.position(1) - there).norm(), 1.0);
 }
 
 TEST(FormationGround, WhoIsGivenBackIsLedToItsPlaceAgain) {
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}}};
   ASSERT_TRUE(team.goes_up());
+  ASSERT_TRUE(team.command({.kind = OrderKind::rally}).ok());
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); }));
   const Vec3 place = team.position(1);
   team.be_piloted(1, true);
   team.push_aside(1, {4.0, 4.0, 0.0});
