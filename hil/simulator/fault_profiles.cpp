@@ -27,7 +27,7 @@ constexpr std::uint64_t kMixStream = 0x6661756c74730002;
 constexpr double kSiteRoom_m = 60.0;
 constexpr double kEverywhere_m = 1e6;
 constexpr Duration kHeldBackMax = seconds{2};
-constexpr double kGustMax_mps = 1.5;
+constexpr double kGustMax_mps = 2.0;
 constexpr std::size_t kLostMax = 2;
 constexpr double kLayer_m = 15.0;
 /// From here on vehicles are numbered that fly under a number of the team.
@@ -609,6 +609,14 @@ void draw_further(Random& random, TeamMission& mission, const FaultParams& param
     taken.what = PilotsTake{{}, random.next()};
     taken.lasts = between(random, seconds{2}, seconds{90});
     mission.faults.push_back(std::move(taken));
+  }
+  if (params.taken_over > 0 && random.chance(0.5)) {
+    const Instant at = Instant{} + between(random, seconds{5}, params.phase);
+    const bool for_good = random.chance(0.3);
+    const Duration lasts = between(random, seconds{1}, seconds{20});
+    mission.faults.push_back({{.not_before = at},
+                              for_good ? std::nullopt : std::optional{lasts},
+                              ProgramsEnd{{kSecondStation}}});
   }
 }
 

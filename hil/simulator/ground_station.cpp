@@ -60,7 +60,8 @@ Result<groundstation::FormationDesk> open_desk(const TeamMission& mission, std::
 
 bool ends_ground_for_a_time(const Fault& fault) {
   const auto* ends = std::get_if<ProgramsEnd>(&fault.what);
-  return ends != nullptr && fault.lasts && contains(ends->who, kGroundStation);
+  return ends != nullptr && fault.lasts &&
+         (contains(ends->who, kGroundStation) || contains(ends->who, kSecondStation));
 }
 
 }  // namespace

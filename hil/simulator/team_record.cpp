@@ -48,8 +48,9 @@ TeamObserver TeamRecorder::observer() {
     if (watcher_.heard) watcher_.heard(vehicle, message, now);
   };
   observer.fault = [this](const FaultEvent& event) {
-    if (event.kind == FaultEvent::Kind::gone) record_.lost.push_back(event.vehicle);
-    if (event.vehicle == kGroundStation) {
+    const bool is_second = event.vehicle == kSecondStation;
+    if (event.kind == FaultEvent::Kind::gone && !is_second) record_.lost.push_back(event.vehicle);
+    if (event.vehicle == kGroundStation || is_second) {
       if (watcher_.fault) watcher_.fault(event);
       return;
     }

@@ -174,9 +174,9 @@ class Team {
     for (std::size_t i = 0; i < restart_at_.size(); ++i) {
       if (!restart_at_[i] || now < *restart_at_[i]) continue;
       restart_at_[i].reset();
-      if (i == ether_.ground()) {
-        grounds_.front().start(now);
-        result_.ground_warning.reset();
+      if (i >= ether_.ground()) {
+        grounds_[i - ether_.ground()].start(now);
+        if (i == ether_.ground()) result_.ground_warning.reset();
       } else {
         vehicles_[i].start_program(hazards_, now);
       }
@@ -360,8 +360,8 @@ class Team {
                    bool with_airframe) {
     if (!ether_.stations()[i].on) return;  // down already
     stands_until_[i] = Instant::min();
-    if (i == ether_.ground()) {
-      grounds_.front().end();
+    if (i >= ether_.ground()) {
+      grounds_[i - ether_.ground()].end();
     } else {
       count_errors(i);
       finder_.on_agent_end(i);
