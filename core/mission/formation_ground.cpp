@@ -285,7 +285,10 @@ std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& membe
   if (member.piloted) return {member.status.position_m};
   const Vec3& seen = member.status.reference_m;
   std::vector<Vec3> places{seen};
-  if (member.status.progress.off_m > kAstray_m / 2.0) places.push_back(member.status.position_m);
+  // The others stop before where it was heard to be beside it (FormationAgent).
+  if (member.status.progress.off_m > config_.tracking_m) {
+    places.push_back(member.status.position_m);
+  }
   for (const Change& change : sent_) {
     const auto mover = may_fly(change, vehicle, member);
     if (!mover) continue;

@@ -271,6 +271,27 @@ TEST(FormationGround, APlaceWhereASilentVehicleIsStaysEmpty) {
   }
 }
 
+TEST(FormationGround, PlacesAreClearOfWhereWhoIsLostWasHeardToBe) {
+  Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
+  ASSERT_TRUE(team.goes_up());
+  FormationOrder line = line_around(Vec3::Zero());
+  const auto places = formation::places(line.shape, 2);
+  const Vec3 along = (places->back() - places->front()).normalized();
+  const Vec3 reference = team.position(1);
+  team.push_aside(1, 0.9 * along);
+  for (int i = 0; i < 20; ++i) team.step();
+  team.lose(1);
+  ASSERT_TRUE(team.until([&] { return team.ground().members().at({2}).lost; }));
+  // A place would be 3 m from its reference, and 2 m from where it is.
+  line.shape.centre = reference - 0.95 * along;
+  const auto given = team.command(line);
+  ASSERT_TRUE(given.ok()) << given.error().message;
+  EXPECT_TRUE(team.until([&] { return team.ground().in_place(); }));
+  for (const std::size_t index : {0U, 2U}) {
+    EXPECT_GE((team.position(index) - team.position(1)).norm(), 3.0 - 1e-6);
+  }
+}
+
 TEST(FormationGround, NobodyIsLedUpThroughWhereASilentVehicleIs) {
   Team team{{{0.0, 0.0, 0.0}, {6.0, 0.0, 0.0}, {12.0, 0.0, 0.0}}};
   ASSERT_TRUE(team.goes_up());
