@@ -610,7 +610,7 @@ void draw_further(Random& random, TeamMission& mission, const FaultParams& param
     taken.lasts = between(random, seconds{2}, seconds{90});
     mission.faults.push_back(std::move(taken));
   }
-  if (params.taken_over > 0 && random.chance(0.5)) {
+  if (has_second_station(mission.faults) && random.chance(0.5)) {
     const Instant at = Instant{} + between(random, seconds{5}, params.phase);
     const bool for_good = random.chance(0.3);
     const Duration lasts = between(random, seconds{1}, seconds{20});
