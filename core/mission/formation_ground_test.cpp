@@ -282,13 +282,14 @@ TEST(FormationGround, PlacesAreClearOfWhereWhoIsLostWasHeardToBe) {
   for (int i = 0; i < 20; ++i) team.step();
   team.lose(1);
   ASSERT_TRUE(team.until([&] { return team.ground().members().at({2}).lost; }));
-  // A place would be 3 m from its reference, and 2 m from where it is.
-  line.shape.centre = reference - 0.95 * along;
+  // A place would be 4.1 m from its reference, and 3.2 m from where it is.
+  line.shape.spacing_m = 4.1;
+  line.shape.centre = reference;
   const auto given = team.command(line);
   ASSERT_TRUE(given.ok()) << given.error().message;
   EXPECT_TRUE(team.until([&] { return team.ground().in_place(); }));
   for (const std::size_t index : {0U, 2U}) {
-    EXPECT_GE((team.position(index) - team.position(1)).norm(), 3.0 - 1e-6);
+    EXPECT_GE((team.position(index) - team.position(1)).norm(), 4.0 - 1e-6);
   }
 }
 
