@@ -2,6 +2,7 @@
 // What a vehicle decides about its own flight: gates, range, fence, others in the air.
 
 const flyer = 'core/mission/task_flyer.cpp';
+const formationAgent = 'core/mission/formation_agent.cpp';
 const ownship = 'core/mission/ownship.cpp';
 const separation = 'core/mission/separation_watch.cpp';
 
@@ -208,5 +209,37 @@ export default [
     file: 'core/mission/fleet.cpp',
     from: 'entry.telemetry && !changed && telemetry.state.time < entry.telemetry->state.time;',
     to: 'entry.telemetry && changed && telemetry.state.time < entry.telemetry->state.time;',
+  },
+  {
+    name: 'piloted-flies-its-change-on',
+    slip: 'a copter of a formation is led on in its change while its pilot has it',
+    promise: 'whom its pilot has is led nowhere',
+    file: 'core/mission/include/skein/mission/formation_agent.hpp',
+    from: 'return held_ || piloted_ || bar_',
+    to: 'return held_ || bar_',
+  },
+  {
+    name: 'given-back-flies-to-its-old-place',
+    slip: 'a copter that its pilot gives back goes on from where its change had it',
+    promise: 'who is given back goes on from where it is',
+    file: formationAgent,
+    from: 'rests_at_ = here(*state_);\n    change_.reset();',
+    to: 'rests_at_ = reference(now);\n    change_.reset();',
+  },
+  {
+    name: 'strays-run-into',
+    slip: 'who moves in a formation stops only once it is at whoever is off what it follows',
+    promise: 'separation is kept from who is where nobody expects it',
+    file: formationAgent,
+    from: 'return then_m < least_m && then_m < now_m;',
+    to: 'return then_m < 0.5 * least_m && then_m < now_m;',
+  },
+  {
+    name: 'piloted-kept-clear-of-where-it-was-led',
+    slip: 'changes keep clear of where a piloted vehicle was led to, not of where it is',
+    promise: 'separation is kept from whom its pilot has',
+    file: 'core/mission/formation_ground.cpp',
+    from: 'if (member.piloted) return {member.status.position_m};',
+    to: 'if (member.piloted) return {member.status.reference_m};',
   },
 ];
