@@ -163,7 +163,7 @@ const longTests = { coalition: 'Coalition.RandomFaults*' };
 // The first test that fails with a mutant and passes without; null where none does. The tests that
 // are named as its file is come first.
 function firstFailure(test, mutant) {
-  const stem = path.basename(mutant.file, '.cpp');
+  const stem = path.parse(mutant.file).name;
   const near = `${stem.replace(/(^|_)(\w)/g, (all, before, letter) => letter.toUpperCase())}*`;
   const long = longTests[test] ?? 'None.None';
   for (const filter of [near, `-${near}:${long}`, long]) {
