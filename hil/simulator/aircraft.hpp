@@ -48,8 +48,8 @@ class Aircraft {
   [[nodiscard]] bool can_hold(const std::vector<Hazard>& hazards) const;
   /// A new node that remembers nothing, in what state the vehicle is.
   void start_program(const std::vector<Hazard>& hazards, Instant now);
-  /// Its pilot keeps it there: in an orbit, or where its track comes to rest. What the node gives is
-  /// not flown.
+  /// Its pilot keeps it there: in an orbit, or where its track comes to rest. What the node gives
+  /// is not flown.
   void taken_by_pilot(Instant now, const std::vector<Hazard>& hazards);
   /// The node flies it again, where it does not already.
   void given_back(Instant now);
