@@ -43,7 +43,6 @@ std::optional<bool> tells_piloted(AutopilotNews news) {
     case AutopilotNews::not_obeying:
     case AutopilotNews::not_climbed:
     case AutopilotNews::still_piloted:
-    case AutopilotNews::not_given_back:
       return true;
     case AutopilotNews::flying:
       return false;

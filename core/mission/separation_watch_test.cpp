@@ -391,6 +391,8 @@ TEST(TellsPiloted, WhoFliesAnAircraftIsDataOfItsNotices) {
   EXPECT_EQ(tells_piloted(AutopilotNews::mode_changed), true);
   EXPECT_EQ(tells_piloted(AutopilotNews::flying), false);
   EXPECT_EQ(tells_piloted(AutopilotNews::pre_arm), std::nullopt);
+  EXPECT_EQ(tells_piloted(AutopilotNews::not_given_back), std::nullopt)
+      << "of who flies it nothing, where the operator gives back what nobody has taken";
 }
 
 }  // namespace
