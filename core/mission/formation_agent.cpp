@@ -147,17 +147,17 @@ void FormationAgent::look_out_for(const FormationStatus& status) {
   }
 }
 
-/// What it flies now, should it brake, leads too near to one of them, and nearer than it is. What
+/// To whom of them what it flies now, should it brake, leads too near, and nearer than it is. What
 /// the vehicle itself may be off is allowed for, what the other is off is known; and no more than
 /// changes keep of who does not move (FormationGround).
-bool FormationAgent::nears_stray() const {
-  if (config_.avoidance != formation::Avoidance::passage) return false;
+std::optional<VehicleId> FormationAgent::nears() const {
+  if (config_.avoidance != formation::Avoidance::passage) return std::nullopt;
   const formation::Separation& apart = change_->separation;
   const double until_next_m = change_->limits.speed_mps * to_seconds(2 * formation::kSlot);
   const double least_m =
       std::min(apart.horizontal_m, apart.horizontal_m - config_.passage.tolerance_m + until_next_m);
   const double factor = height_factor(apart);
-  return std::ranges::any_of(strays_, [&](const auto& stray) {
+  const auto near = std::ranges::find_if(strays_, [&](const auto& stray) {
     const auto distance_m = [&](const MotionTrack::Point& point) {
       Vec3 between = Vec3{point.position_m.data()} - stray.second;
       between.z() *= factor;
@@ -170,6 +170,7 @@ bool FormationAgent::nears_stray() const {
       return then_m < least_m && then_m < now_m;
     });
   });
+  return near == strays_.end() ? std::nullopt : std::optional{near->first};
 }
 
 void FormationAgent::on_command(const Command& command, Instant now) {
@@ -197,7 +198,7 @@ void FormationAgent::on_piloted(bool piloted, Instant now) {
     change_.reset();
     execution_.reset();
     not_begun_.clear();
-    nears_stray_ = false;
+    stray_ahead_.reset();
     track_ = MotionTrack::standing_at(*rests_at_, now);
   }
   step(now);
@@ -233,7 +234,7 @@ void FormationAgent::step(Instant now) {
     execution_->set_off(off);
     execution_->step(now);
     track_ = execution_->track();
-    nears_stray_ = nears_stray();
+    stray_ahead_ = nears();
     execution_->hold(waits());
     if (!arrived_ && execution_->finished()) {
       arrived_ = true;
@@ -256,7 +257,8 @@ void FormationAgent::step(Instant now) {
 }
 
 void FormationAgent::tell_of_wait(Instant now) {
-  const bool waits = !execution_->finished() && execution_->at_rest() && now >= change_->start;
+  const bool rests = !execution_->finished() && execution_->at_rest() && now >= change_->start;
+  const bool waits = rests && !piloted_;
   if (!waits) {
     waits_since_.reset();
     return;
@@ -268,6 +270,9 @@ void FormationAgent::tell_of_wait(Instant now) {
   if (!not_begun_.empty()) {
     waiting.what = event::WaitsFor::beginning;
     waiting.vehicle = *not_begun_.begin();
+  } else if (stray_ahead_) {
+    waiting.what = event::WaitsFor::passing;
+    waiting.vehicle = *stray_ahead_;
   } else if (const auto other = execution_->waits_for()) {
     waiting.what = event::WaitsFor::passing;
     waiting.vehicle = change_->movers[*other].vehicle;

@@ -123,6 +123,8 @@ TEST(FormationAgent, WhomItsPilotHasTakesUpNothingAndRestsWhereItIsGivenBack) {
   copter.fly(3.0);
   EXPECT_TRUE(copter.status.at_rest);
   EXPECT_LT(copter.status.reference_m.x(), 19.0) << "it stops on its way";
+  copter.fly(5.0);
+  EXPECT_EQ(copter.events().back().kind(), EventKind::change_taken_up) << "it waits for nobody";
   const Vec3 there{5.0, 7.0, 12.0};
   (void)copter.events();
   copter.tell(ahead(2));
@@ -175,6 +177,10 @@ TEST(FormationAgent, StopsBeforeWhoIsOffWhatItFollowsUntilThatIsElsewhere) {
   const double of_vehicles_m = change.separation.horizontal_m - 1.0;  // without what both are off
   EXPECT_GE(apart_m, of_vehicles_m);
   EXPECT_LT(apart_m, of_vehicles_m + 2.0);
+  const auto told = copter.events();
+  const auto* waits = std::get_if<event::Waiting>(&told.back().body);
+  ASSERT_NE(waits, nullptr);
+  EXPECT_EQ(waits->vehicle, VehicleId{4});
   copter.is_beside({4}, on_its_way, 0.1);
   copter.fly(30.0);
   EXPECT_NEAR(copter.status.position_m.x(), 20.0, 1e-6) << "it follows what it is told again";

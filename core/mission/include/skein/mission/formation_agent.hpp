@@ -62,13 +62,13 @@ class FormationAgent final : public OnboardAgent {
                                                             std::size_t self) const;
   void on_status(const FormationStatus& status, Instant now);
   void look_out_for(const FormationStatus& status);
-  [[nodiscard]] bool nears_stray() const;
+  [[nodiscard]] std::optional<VehicleId> nears() const;
   void on_command(const Command& command, Instant now);
   void step(Instant now);
   void tell_of_wait(Instant now);
   [[nodiscard]] ActivityDetail detail(bool moving) const;
   [[nodiscard]] bool waits() const {
-    return held_ || piloted_ || bar_ != Bar::none || !not_begun_.empty() || nears_stray_;
+    return held_ || piloted_ || bar_ != Bar::none || !not_begun_.empty() || stray_ahead_;
   }
   /// Where it is led to be; where it is, as long as nobody leads it.
   [[nodiscard]] Vec3 reference(Instant now) const;
@@ -87,9 +87,9 @@ class FormationAgent final : public OnboardAgent {
   Instant next_status_;
   std::set<VehicleId> not_begun_;  ///< movers not heard of in the change
   std::optional<Instant> waits_since_;
-  std::uint32_t refused_ = 0;         ///< number of the newest change that it could not take
-  std::map<VehicleId, Vec3> strays_;  ///< who is off what it follows, and where it is
-  bool nears_stray_ = false;
+  std::uint32_t refused_ = 0;             ///< number of the newest change that it could not take
+  std::map<VehicleId, Vec3> strays_;      ///< who is off what it follows, and where it is
+  std::optional<VehicleId> stray_ahead_;  ///< before whom it stops
   CommandFilter commands_;
   bool held_ = false;     ///< by the operator
   bool piloted_ = false;  ///< others fly it
