@@ -20,6 +20,9 @@ Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m};
 /// Who waits for longer says so.
 constexpr Duration kLongWait = std::chrono::seconds{3};
 
+/// Who stopped before another waits until that has moved by so much.
+constexpr double kStirs_m = 0.3;
+
 /// Lower than this it stands, where its flight controller does not say.
 constexpr double kStands_m = 1.0;
 /// Off a vertical by less, a way is one.
@@ -87,6 +90,7 @@ void FormationAgent::on_change(const Change& change, Instant now) {
   change_ = change;
   number_ = change.number;
   rests_at_.reset();
+  stray_ahead_.reset();
   if (config_.avoidance == formation::Avoidance::field) {
     execution_ = std::make_unique<formation::FieldFlight>(change, *self, config_.field, now);
   } else {
@@ -150,7 +154,7 @@ void FormationAgent::look_out_for(const FormationStatus& status) {
 /// To whom of them what it flies now, should it brake, leads too near, and nearer than it is. What
 /// the vehicle itself may be off is allowed for, what the other is off is known; and no more than
 /// changes keep of who does not move (FormationGround).
-std::optional<VehicleId> FormationAgent::nears() const {
+std::optional<FormationAgent::Stray> FormationAgent::nears() const {
   if (config_.avoidance != formation::Avoidance::passage) return std::nullopt;
   const formation::Separation& apart = change_->separation;
   const double until_next_m = change_->limits.speed_mps * to_seconds(2 * formation::kSlot);
@@ -170,7 +174,13 @@ std::optional<VehicleId> FormationAgent::nears() const {
       return then_m < least_m && then_m < now_m;
     });
   });
-  return near == strays_.end() ? std::nullopt : std::optional{near->first};
+  if (near == strays_.end()) return std::nullopt;
+  return Stray{near->first, near->second};
+}
+
+bool FormationAgent::is_there_yet(const Stray& stray) const {
+  const auto found = strays_.find(stray.vehicle);
+  return found != strays_.end() && (found->second - stray.place).norm() < kStirs_m;
 }
 
 void FormationAgent::on_command(const Command& command, Instant now) {
@@ -234,7 +244,7 @@ void FormationAgent::step(Instant now) {
     execution_->set_off(off);
     execution_->step(now);
     track_ = execution_->track();
-    stray_ahead_ = nears();
+    if (!stray_ahead_ || !is_there_yet(*stray_ahead_)) stray_ahead_ = nears();
     execution_->hold(waits());
     if (!arrived_ && execution_->finished()) {
       arrived_ = true;
@@ -272,7 +282,7 @@ void FormationAgent::tell_of_wait(Instant now) {
     waiting.vehicle = *not_begun_.begin();
   } else if (stray_ahead_) {
     waiting.what = event::WaitsFor::passing;
-    waiting.vehicle = *stray_ahead_;
+    waiting.vehicle = stray_ahead_->vehicle;
   } else if (const auto other = execution_->waits_for()) {
     waiting.what = event::WaitsFor::passing;
     waiting.vehicle = change_->movers[*other].vehicle;

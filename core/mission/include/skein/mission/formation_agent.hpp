@@ -62,7 +62,12 @@ class FormationAgent final : public OnboardAgent {
                                                             std::size_t self) const;
   void on_status(const FormationStatus& status, Instant now);
   void look_out_for(const FormationStatus& status);
-  [[nodiscard]] std::optional<VehicleId> nears() const;
+  struct Stray {
+    VehicleId vehicle;
+    Vec3 place;
+  };
+  [[nodiscard]] std::optional<Stray> nears() const;
+  [[nodiscard]] bool is_there_yet(const Stray& stray) const;
   void on_command(const Command& command, Instant now);
   void step(Instant now);
   void tell_of_wait(Instant now);
@@ -87,9 +92,9 @@ class FormationAgent final : public OnboardAgent {
   Instant next_status_;
   std::set<VehicleId> not_begun_;  ///< movers not heard of in the change
   std::optional<Instant> waits_since_;
-  std::uint32_t refused_ = 0;             ///< number of the newest change that it could not take
-  std::map<VehicleId, Vec3> strays_;      ///< who is off what it follows, and where it is
-  std::optional<VehicleId> stray_ahead_;  ///< before whom it stops
+  std::uint32_t refused_ = 0;         ///< number of the newest change that it could not take
+  std::map<VehicleId, Vec3> strays_;  ///< who is off what it follows, and where it is
+  std::optional<Stray> stray_ahead_;  ///< before whom it stops
   CommandFilter commands_;
   bool held_ = false;     ///< by the operator
   bool piloted_ = false;  ///< others fly it
