@@ -10,6 +10,7 @@
 #include "names.hpp"
 #include "skein/base/contains.hpp"
 #include "skein/base/shortened.hpp"
+#include "skein/mission/shown_state.hpp"
 #include "skein/planning/fence_check.hpp"
 
 namespace skein::mission {
@@ -430,7 +431,7 @@ void FormationGround::on_telemetry(const Telemetry& telemetry, Instant now) {
   const auto found = members_.find(telemetry.vehicle);
   if (found == members_.end()) return;
   Member& member = found->second;
-  member.piloted = telemetry.detail == ActivityDetail::piloted;
+  member.piloted = shown_state(telemetry.activity, telemetry.detail) == ShownState::piloted;
   if (member.piloted && !member.lost) {
     lose(telemetry.vehicle, member, FormationNews::astray, now);
   }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "names.hpp"
+#include "skein/mission/shown_state.hpp"
 #include "skein/planning/fence_check.hpp"
 #include "told_at_once.hpp"
 
@@ -183,7 +184,8 @@ void TrackGround::on_message(const Message& message, Instant now) {
     const auto member = members_.find(telemetry->vehicle);
     if (member == members_.end()) return;
     member->second.range_left_m = telemetry->range_left_m;
-    member->second.piloted = telemetry->detail == ActivityDetail::piloted;
+    member->second.piloted =
+        shown_state(telemetry->activity, telemetry->detail) == ShownState::piloted;
   } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
     know(*hazard);
   }
