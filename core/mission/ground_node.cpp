@@ -120,15 +120,13 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
   return true;
 }
 
+/// News are of anybody; who differs is known of whoever speaks.
 void GroundNode::take_differences(VehicleId vehicle, Instant now) {
-  bool any = false;
   for (auto news = setup_.poll_news(); news; news = setup_.poll_news()) {
     MissionEvent event{kGroundStation, now, {}, {}, *std::move(news)};
     messages_.push(event);
     events_.push(std::move(event));
-    any = true;
   }
-  if (!any) return;
   const SetupDifference* const difference = setup_.difference(vehicle);
   agent_.fleet().set_difference(vehicle, difference);
   // An id that is used twice is no matter of setups, and its end would not be heard of here.

@@ -59,6 +59,30 @@ TEST(GroundNode, OnlyTheLeaderOfARoundAsksForItsAuthorisation) {
   EXPECT_EQ(ground.agent().authorisations().size(), 1U);
 }
 
+TEST(GroundNode, WhoseSecondProgramIsSilentIsWorkedWithAgainWhoeverSpeaksFirst) {
+  GroundNode ground = node();
+  const auto speak = [&](VehicleId vehicle, InstanceId instance, double seconds) {
+    Telemetry telemetry = telemetry_of(Activity::searching);
+    telemetry.vehicle = vehicle;
+    telemetry.instance = instance;
+    telemetry.state.time = at_seconds(seconds);
+    ground.on_message(telemetry, vehicle, at_seconds(seconds));
+    Setup setup;
+    setup.node = vehicle;
+    setup.instance = instance;
+    setup.time = at_seconds(seconds);
+    ground.on_message(setup, vehicle, at_seconds(seconds));
+  };
+  for (const std::uint64_t instance : {7U, 8U, 7U}) speak(kVehicle, {instance}, 1.0);
+  ASSERT_TRUE(ground.fleet().why_not_with(kVehicle));
+  for (double s = 2.0; s < 60.0; s += 1.0) {
+    ground.on_timeout(at_seconds(s));
+    speak({3}, {9}, s);
+    speak(kVehicle, {7}, s);
+  }
+  EXPECT_FALSE(ground.fleet().why_not_with(kVehicle));
+}
+
 /// As a later leader and a vehicle that starts anew must hear of it.
 TEST(GroundNode, ARefusalIsToldAsAWithdrawalForTheRestOfTheMissionAlsoAfterANewStart) {
   GroundNode ground = node();
