@@ -65,7 +65,9 @@ bool Scout::withdraw(SiteId site, Instant now) {
 }
 
 void Scout::on_message(const coalition::Message& message, Instant now) {
-  const auto is_led = [this](SiteId site) {
+  // Its own words come back from the ground station, which passes them on.
+  const auto is_led = [this](SiteId site, VehicleId leader) {
+    if (leader == ownship_.spec().id) return;
     std::erase_if(surveyed_, [site](const Surveyed& s) { return s.site.id == site; });
   };
   // Who says that it was heard later than now would never be lost.
@@ -73,13 +75,13 @@ void Scout::on_message(const coalition::Message& message, Instant now) {
   if (const auto* announcement = std::get_if<coalition::Announcement>(&message)) {
     known_.insert(announcement->site.id);
     sites_.on_leader(announcement->site, std::min(announcement->announced_at, latest));
-    is_led(announcement->site.id);
+    is_led(announcement->site.id, announcement->round.coalition.leader);
   } else if (const auto* award = std::get_if<coalition::Award>(&message)) {
     sites_.on_leader(award->site, std::min(award->awarded_at, latest));
-    is_led(award->site.id);
+    is_led(award->site.id, award->round.coalition.leader);
   } else if (const auto* renewal = std::get_if<coalition::LeaseRenewal>(&message)) {
     sites_.on_renewal(*renewal, now);
-    is_led(renewal->site);
+    is_led(renewal->site, renewal->round.coalition.leader);
   } else if (const auto* status = std::get_if<coalition::MemberStatus>(&message)) {
     sites_.on_status(*status);
     on_status(*status);

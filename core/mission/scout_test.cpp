@@ -24,9 +24,9 @@ struct Scouting : PartsBench {
     return std::nullopt;
   }
   /// Another vehicle announces it, at this moment.
-  void is_announced(const Site& site) {
+  void is_announced(const Site& site, VehicleId by = {7}) {
     coalition::Announcement announcement;
-    announcement.round = {{{7}, {1}, 1}, 1};
+    announcement.round = {{by, {1}, 1}, 1};
     announcement.site = site;
     announcement.announced_at = now;
     scout.on_message(coalition::Message{announcement}, now);
@@ -229,6 +229,8 @@ TEST(Scout, ASiteThatWasPutOffIsLedLaterUnlessOthersDo) {
   s.scout.put_off(test_site(1), {});
   s.scout.put_off(test_site(2), {});
   s.is_announced(test_site(1));
+  // The ground station passes on what the vehicle itself has said before.
+  s.is_announced(test_site(2), s.ownship.spec().id);
   const auto site = s.scout.take_up(s.now);
   ASSERT_TRUE(site);
   EXPECT_EQ(site->site.id, SiteId{2});

@@ -81,16 +81,14 @@ const TaskRun& first_done(const std::vector<const TaskRun*>& runs) {
   });
 }
 
-/// The operator's last word on a site was no.
+/// An operator's no stands for the rest of the mission, whatever another ground station grants that
+/// has not heard of it.
 bool refused(const RunRecord& record, SiteId site) {
-  bool is_refused = false;
-  for (const MissionEvent& event : record.ground_events) {
-    if (event.task.site != site) continue;
-    if (event.kind() == EventKind::authorisation_refused) is_refused = true;
-    if (event.kind() == EventKind::authorisation_withdrawn) is_refused = true;
-    if (event.kind() == EventKind::authorised) is_refused = false;
-  }
-  return is_refused;
+  return std::ranges::any_of(record.ground_events, [site](const MissionEvent& event) {
+    const bool is_no = event.kind() == EventKind::authorisation_refused ||
+                       event.kind() == EventKind::authorisation_withdrawn;
+    return is_no && event.task.site == site;
+  });
 }
 
 }  // namespace

@@ -304,12 +304,14 @@ class Team {
     return now < stands_until_[i];
   }
 
-  /// What comes to it waits for it; its aircraft flies on by the guidance that it has.
+  /// What comes to it waits for it; its aircraft flies on by the guidance that it has. One that has
+  /// none yet would not be in the air by its program.
   bool stall_programs(const Fault& fault, const std::vector<VehicleId>& who, Instant now) {
     const Duration lasts = fault.lasts.value_or(Duration{});
     for (const VehicleId id : who) {
       const std::size_t i = ether_.index_of(id);
-      if (!ether_.stations()[i].on) continue;
+      const bool has_guidance = i >= ether_.ground() || vehicles_[i].plan() != nullptr;
+      if (!ether_.stations()[i].on || !has_guidance) continue;
       stands_until_[i] = std::max(stands_until_[i], now + lasts);
       tell(now, FaultEvent::Kind::stands_still, id, fmt::format("for {:.2f} s", to_seconds(lasts)),
            lasts);
