@@ -55,26 +55,43 @@ hidden int new_p, new_q, new_s, new_u, old;
 
 #include "contract_net.pml"
 
+/* HEALS: from some tick on nothing fails any more (healing.pml). */
+#ifdef HEALS
+bool healed;
+#define UNTIL_HEALED provided (!healed)
+#define NO_ROOM (!healed && air_p[HELD - 1] != 0)
+#else
+#define UNTIL_HEALED
+#define NO_ROOM (air_p[K - 1] != 0)
+#define choose_hearers() skip
+#define restart_wait(v) skip
+#define tell_done(v) skip
+#define check_rounds(c) skip
+#endif
+
 inline swap(new, all) { old = all; all = new; new = old }
 #define AFTER(n) (new_p > air_p[n] || (new_p == air_p[n] && (new_q > air_q[n] || (new_q == air_q[n] && \
   (new_s > air_s[n] || (new_s == air_s[n] && new_u > air_u[n]))))))
 #define SAME(n) (new_p == air_p[n] && new_q == air_q[n] && new_s == air_s[n] && new_u == air_u[n])
 
+inline put_in_air() {
+  for (z : 0 .. K - 1) {
+    if
+    :: SAME(z) -> new_p = 0; new_q = 0; new_s = 0; new_u = 0
+    :: !SAME(z) && AFTER(z) ->
+      swap(new_p, air_p[z]); swap(new_q, air_q[z]); swap(new_s, air_s[z]); swap(new_u, air_u[z])
+    :: else
+    fi
+  }
+}
 inline reply() {
   new_p = o_k | (o_c << 4) | (o_r << 5) | (o_v << 8) | (o_t << 10) | (o_x << 12) | (o_i << 15) | (o_n << 17) | (o_e << AWARDED_SINCE);
   new_q = o_a | (o_b << 4) | (o_d << 8) | (o_w << 12);
   new_s = o_s; new_u = o_u;
+  choose_hearers();
   if
-  :: air_p[K - 1] != 0 -> skip           /* lost */
-  :: else ->
-    for (z : 0 .. K - 1) {
-      if
-      :: SAME(z) -> new_p = 0; new_q = 0; new_s = 0; new_u = 0
-      :: !SAME(z) && AFTER(z) ->
-        swap(new_p, air_p[z]); swap(new_q, air_q[z]); swap(new_s, air_s[z]); swap(new_u, air_u[z])
-      :: else
-      fi
-    }
+  :: NO_ROOM -> skip                     /* lost */
+  :: else -> put_in_air()
   fi;
   o_k = 0; o_c = 0; o_r = 0; o_v = 0; o_t = 0; o_x = 0; o_i = 0; o_n = 0;
   o_a = 0; o_b = 0; o_d = 0; o_e = 0; o_s = 0; o_u = 0; o_w = 0
@@ -104,6 +121,7 @@ inline plan_times(c, q) {
   fi
 }
 inline set_out(v) {
+  restart_wait(v);
   if
   :: IS_DELIVERY(lt[v] - 1) -> fend[v] = m_s + AHEAD; fgate[v] = fend[v] - RUN
   :: else -> fend[v] = NEVER; fgate[v] = NEVER
@@ -125,7 +143,7 @@ inline note_award(c, v) {
   skip
 #endif
 }
-inline round_begins(c) { skip }
+inline round_begins(c) { check_rounds(c) }
 
 /* What a closed coalition held says nothing any more. */
 inline closing(c) {
@@ -140,8 +158,12 @@ inline closing(c) {
 /* v is handed message n, which stays in the air. */
 inline hear(v, n, willing) {
   load(n);
+  handle(v, willing)
+}
+inline handle(v, willing) {
   if
-  :: m_k == ANNOUNCEMENT && MAY_BID(v) -> bid(v)
+  :: m_k == ANNOUNCEMENT && MAY_BID(v) -> bid(v); restart_wait(v)
+  :: m_k == ANNOUNCEMENT && !MAY_BID(v) -> tell_done(v)
   :: m_k == BID && LEADS(v, m_c) -> on_bid(m_c)
   :: m_k == AWARD ->
     judge_award(v);
@@ -393,12 +415,21 @@ inline tick() {
 #define CLAIMS_IT(v) (v == 2)
 #define WAITS_ON(v) false
 #else
+#ifdef LEADER_STAYS
+#define GOES(v) (v != 0)
+#else
 #define GOES(v) true
+#endif
 #define CLAIMS_IT(v) true
 #define WAITS_ON(v) true
 #endif
 
-proctype Vehicle(byte v) {
+#ifdef HEALS
+#include "healing.pml"
+#endif
+
+proctype Vehicle(byte v) UNTIL_HEALED {
+end_faults:
   do
   HEAR(0) HEAR(1)
 #if K > 2
@@ -473,12 +504,16 @@ proctype Vehicle(byte v) {
   od
 }
 
-proctype World() {
+proctype World() UNTIL_HEALED {
+end_faults:
   do
 #ifdef GATE
   :: d_step { !FLIGHT_IS_DUE -> tick(); skip }
 #else
   :: d_step { tick(); skip }
+#endif
+#ifdef HEALS
+  HEALS_NOW
 #endif
   VANISH(0) VANISH(1)
 #if K > 2
@@ -521,6 +556,10 @@ init {
 #endif
 #ifdef GATE
     run Operator();
+#endif
+#ifdef HEALS
+    run Healed(0); run Healed(1); run Healed(2);
+    run Clock();
 #endif
     run World()
   }
