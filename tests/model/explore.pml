@@ -27,10 +27,17 @@
 #define COALITIONS byte
 #define EXISTS(t) true
 #define RUN 1                            /* from gate to delivery */
+#if defined(HEALS) && C > 1              /* a cut may have been longer than cut_max: two then lead */
+#define BROKEN(what) skip
+#else
 #define BROKEN(what) assert(false)
+#endif
 #define PLAN_IS_DUE(v, q) false
 /* AUTHORITY: who may lead, and no leases: a coalition of V stands, each with a task that it keeps. Clocks
  * need not agree for it; that leases end by other clocks is the guard in the invariant. */
+#ifdef STANDS                            /* it does from the beginning, with a task for each of its members */
+#define CLAIMS
+#endif
 #ifdef AUTHORITY
 #define UNTIL(t, u) EVER
 #define CLAIMS
@@ -50,42 +57,69 @@ hidden int new_p, new_q, new_s, new_u, old;
 /* Of each message: the vehicles that were awarded something after what it is about was sent. Stamps are
  * whole ticks, and at last all the same: they do not tell. */
 #define AWARDED_SINCE 19
+#define MORE_COALITIONS 26
 #define SENT_BEFORE_AWARD(v)    IN(m_e, v)
 #define LEFT_BEFORE_AWARD(c, v) IN(m_e, v)
 
 #include "contract_net.pml"
+
+/* HEALS: from some tick on nothing fails any more (healing.pml). */
+#ifdef HEALS
+bool healed;
+#ifdef FAULT_TICKS
+byte faulted;                            /* ticks, of as many at most */
+#define FAULTS_GO_ON faulted < FAULT_TICKS -> faulted++
+#else
+#define FAULTS_GO_ON true
+#endif
+hidden byte h, again, living, turn, led;
+#define UNTIL_HEALED provided (!healed)
+#define NO_ROOM (!healed && air_p[HELD - 1] != 0)
+#else
+#define UNTIL_HEALED
+#define FAULTS_GO_ON true
+#define NO_ROOM (air_p[K - 1] != 0)
+#define choose_hearers() skip
+#define restart_wait(v) skip
+#define tell_done(v) skip
+#define check_rounds(c) skip
+#endif
 
 inline swap(new, all) { old = all; all = new; new = old }
 #define AFTER(n) (new_p > air_p[n] || (new_p == air_p[n] && (new_q > air_q[n] || (new_q == air_q[n] && \
   (new_s > air_s[n] || (new_s == air_s[n] && new_u > air_u[n]))))))
 #define SAME(n) (new_p == air_p[n] && new_q == air_q[n] && new_s == air_s[n] && new_u == air_u[n])
 
+inline put_in_air() {
+  for (z : 0 .. K - 1) {
+    if
+    :: SAME(z) -> new_p = 0; new_q = 0; new_s = 0; new_u = 0
+    :: !SAME(z) && AFTER(z) ->
+      swap(new_p, air_p[z]); swap(new_q, air_q[z]); swap(new_s, air_s[z]); swap(new_u, air_u[z])
+    :: else
+    fi
+  }
+}
 inline reply() {
-  new_p = o_k | (o_c << 4) | (o_r << 5) | (o_v << 8) | (o_t << 10) | (o_x << 12) | (o_i << 15) | (o_n << 17) | (o_e << AWARDED_SINCE);
+  new_p = o_k | ((o_c & 1) << 4) | ((o_c & 2) << MORE_COALITIONS) | (o_r << 5) | (o_v << 8) | (o_t << 10) | (o_x << 12) | (o_i << 15) | (o_n << 17) | (o_e << AWARDED_SINCE);
   new_q = o_a | (o_b << 4) | (o_d << 8) | (o_w << 12);
   new_s = o_s; new_u = o_u;
+  choose_hearers();
   if
-  :: air_p[K - 1] != 0 -> skip           /* lost */
-  :: else ->
-    for (z : 0 .. K - 1) {
-      if
-      :: SAME(z) -> new_p = 0; new_q = 0; new_s = 0; new_u = 0
-      :: !SAME(z) && AFTER(z) ->
-        swap(new_p, air_p[z]); swap(new_q, air_q[z]); swap(new_s, air_s[z]); swap(new_u, air_u[z])
-      :: else
-      fi
-    }
+  :: NO_ROOM -> skip                     /* lost */
+  :: else -> put_in_air()
   fi;
   o_k = 0; o_c = 0; o_r = 0; o_v = 0; o_t = 0; o_x = 0; o_i = 0; o_n = 0;
   o_a = 0; o_b = 0; o_d = 0; o_e = 0; o_s = 0; o_u = 0; o_w = 0
 }
 
-inline load(n) {
-  m_k = air_p[n] & 15; m_c = (air_p[n] >> 4) & 1; m_r = (air_p[n] >> 5) & 7; m_v = (air_p[n] >> 8) & 3;
-  m_t = (air_p[n] >> 10) & 3; m_x = (air_p[n] >> 12) & 7; m_i = (air_p[n] >> 15) & 3; m_n = (air_p[n] >> 17) & 3;
-  m_e = (air_p[n] >> AWARDED_SINCE) & 15;
-  m_a = air_q[n] & 15; m_b = (air_q[n] >> 4) & 15; m_d = (air_q[n] >> 8) & 15; m_w = (air_q[n] >> 12) & 65535;
-  m_s = air_s[n]; m_u = air_u[n]
+inline load(n) { read(air_p[n], air_q[n], air_s[n], air_u[n]) }
+inline read(p_, q_, s_, u_) {
+  m_k = p_ & 15; m_c = ((p_ >> 4) & 1) | ((p_ >> MORE_COALITIONS) & 2); m_r = (p_ >> 5) & 7; m_v = (p_ >> 8) & 3;
+  m_t = (p_ >> 10) & 3; m_x = (p_ >> 12) & 7; m_i = (p_ >> 15) & 3; m_n = (p_ >> 17) & 3;
+  m_e = (p_ >> AWARDED_SINCE) & 15;
+  m_a = q_ & 15; m_b = (q_ >> 4) & 15; m_d = (q_ >> 8) & 15; m_w = (q_ >> 12) & 65535;
+  m_s = s_; m_u = u_
 }
 
 /* The network takes message n away. */
@@ -104,6 +138,7 @@ inline plan_times(c, q) {
   fi
 }
 inline set_out(v) {
+  restart_wait(v);
   if
   :: IS_DELIVERY(lt[v] - 1) -> fend[v] = m_s + AHEAD; fgate[v] = fend[v] - RUN
   :: else -> fend[v] = NEVER; fgate[v] = NEVER
@@ -125,7 +160,7 @@ inline note_award(c, v) {
   skip
 #endif
 }
-inline round_begins(c) { skip }
+inline round_begins(c) { check_rounds(c) }
 
 /* What a closed coalition held says nothing any more. */
 inline closing(c) {
@@ -135,13 +170,26 @@ inline closing(c) {
 }
 
 #define LEADS(v, c) (alive[v] && leader[c] == (v) + 1 && state[c] != NONE && state[c] != CLOSED)
+#if C > 2
+#define LEADS_ANY(v) (LEADS(v, 0) || LEADS(v, 1) || LEADS(v, 2) || LEADS(v, C - 1))
+#else
 #define LEADS_ANY(v) (LEADS(v, 0) || LEADS(v, C - 1))
+#endif
+#if defined(HEALS) && C > 1
+#define IS_ENGAGED(v) (LEADS_ANY(v) && !LEADS(v, m_c))
+#else
+#define IS_ENGAGED(v) false
+#endif
 
 /* v is handed message n, which stays in the air. */
 inline hear(v, n, willing) {
   load(n);
+  handle(v, willing)
+}
+inline handle(v, willing) {
   if
-  :: m_k == ANNOUNCEMENT && MAY_BID(v) -> bid(v)
+  :: m_k == ANNOUNCEMENT && MAY_BID(v) && !IS_ENGAGED(v) -> bid(v); restart_wait(v)
+  :: m_k == ANNOUNCEMENT && !(MAY_BID(v) && !IS_ENGAGED(v)) -> tell_done(v)
   :: m_k == BID && LEADS(v, m_c) -> on_bid(m_c)
   :: m_k == AWARD ->
     judge_award(v);
@@ -157,6 +205,13 @@ inline hear(v, n, willing) {
   :: m_k == RENEWAL -> participant_on_renewal(v)
   :: m_k == STATUS ->
     m_n = m_c + 1;
+#ifdef HEALS
+    what_it_leads(v);
+    if
+    :: led < C -> on_status(led)
+    :: else
+    fi;
+#else
     if
     :: LEADS(v, 0) -> on_status(0)
     :: else
@@ -167,12 +222,15 @@ inline hear(v, n, willing) {
     :: else
     fi;
 #endif
+#endif
     if
     :: m_x == S_DONE && pln[v] == m_c + 1 -> known_done[v] = known_done[v] | ONLY(m_t)
     :: else
     fi
   :: m_k == CLAIM -> on_claim(v)
+#if DELIVERIES > 0
   :: m_k == DECISION -> on_decision(v); on_decision_leader(v)
+#endif
   :: m_k == ALLEGIANCE ->
     if
     :: LEADS(v, m_c) -> on_allegiance_leader(m_c)
@@ -361,7 +419,14 @@ inline tick() {
 #define CONCERNS(v, n) (KIND(n) != 0 && ((KIND(n) != BID && KIND(n) != CONFIRMATION && KIND(n) != STATUS && KIND(n) != ALLEGIANCE) || \
   LEADS_ANY(v) || (KIND(n) == ALLEGIANCE && fol[v] == v + 1)))
 #define KIND(n)   (air_p[n] & 15)
+/* A single message makes room for its answer. */
+#define HEAR_LAST :: atomic { alive[v] && CONCERNS(v, 0) -> \
+    d_step { load(0); vanish(0); note_heard(v); skip }; d_step { handle(v, true); skip } }
+#if defined(HEALS) && C > 1              /* more than spin has room for in one d_step */
+#define HEAR(n)   :: atomic { alive[v] && CONCERNS(v, n) -> d_step { load(n); note_heard(v); skip }; d_step { handle(v, true); skip } }
+#else
 #define HEAR(n)   :: d_step { alive[v] && CONCERNS(v, n) -> hear(v, n, true); skip }
+#endif
 #define REFUSE(n) :: d_step { alive[v] && (air_p[n] & 15) == AWARD -> hear(v, n, false); skip }
 #define VANISH(n) :: d_step { air_p[n] != 0 -> vanish(n); skip }
 #define AWARDS(c, t, b) :: d_step { LEADS(v, c) && state[c] == ANNOUNCING && IN(bids[c], b) -> award(c, t, b); skip }
@@ -393,14 +458,27 @@ inline tick() {
 #define CLAIMS_IT(v) (v == 2)
 #define WAITS_ON(v) false
 #else
+#ifdef LEADER_STAYS
+#define GOES(v) (v != 0)
+#else
 #define GOES(v) true
+#endif
 #define CLAIMS_IT(v) true
 #define WAITS_ON(v) true
 #endif
 
-proctype Vehicle(byte v) {
+#ifdef HEALS
+#include "healing.pml"
+#endif
+
+proctype Vehicle(byte v) UNTIL_HEALED {
+end_faults:
   do
+#if defined(HEALS) && HELD == 1
+  HEAR(0) HEAR_LAST
+#else
   HEAR(0) HEAR(1)
+#endif
 #if K > 2
   HEAR(2)
 #endif
@@ -473,12 +551,16 @@ proctype Vehicle(byte v) {
   od
 }
 
-proctype World() {
+proctype World() UNTIL_HEALED {
+end_faults:
   do
 #ifdef GATE
   :: d_step { !FLIGHT_IS_DUE -> tick(); skip }
 #else
-  :: d_step { tick(); skip }
+  :: d_step { FAULTS_GO_ON -> tick(); skip }
+#endif
+#ifdef HEALS
+  HEALS_NOW
 #endif
   VANISH(0) VANISH(1)
 #if K > 2
@@ -508,6 +590,21 @@ init {
         fst[q] = PLANNED; pln[q] = 1; prnd[q] = 1; elinst[q] = 1;
         for (z : 0 .. V - 1) { pown[q] = pown[q] | ((z + 1) << (4 * z)) }
       }
+#elif defined(STANDS)
+      leader[0] = 1; state[0] = EXECUTING; round[0] = 1; promised[0] = EVER;
+      electors[0] = ONLY(V) - 1;
+      for (q : 0 .. V - 1) { ack[q] = NOW(0); elinst[q] = 1 }
+      for (q : 0 .. T - 1) {
+        ownership[q] = LEASED; owner[q] = q + 1; eround[q] = 1; einst[q] = 1; elease[q] = NOW(0) + LEASE;
+        asked[0] = asked[0] | ONLY(q + 1);
+        pown[1] = pown[1] | ((q + 2) << (4 * q))
+      };
+      confirmed[0] = asked[0];
+      for (q : 1 .. V - 1) {
+        pst[q] = MEMBER; pc[q] = 1; pr[q] = 1; answered[q] = 1; lt[q] = q; lun[q] = NOW(0) + LEASE; fst[q] = PLANNED;
+        pln[q] = 1; prnd[q] = 1; elec[q] = true; els[q] = electors[0]; fol[q] = 1; prom[q] = NOW(0) + LEASE; ren[q] = NOW(0);
+        pown[q] = pown[1]
+      }
 #else
       lead(0, 0, 0);
 #ifdef TWO_LEADERS
@@ -521,6 +618,13 @@ init {
 #endif
 #ifdef GATE
     run Operator();
+#endif
+#ifdef HEALS
+    run Healed(0); run Healed(1); run Healed(2);
+#ifdef HEARD_TOGETHER
+    run Air();
+#endif
+    run Clock();
 #endif
     run World()
   }

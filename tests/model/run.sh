@@ -25,14 +25,21 @@ declare -Ar configurations=(
   [gate]="$times -DT=1 -DC=2 -DFIRST=1 -DAHEAD=2 -DDELIVERIES=1 -DWITHOUT_ELECTORS -DGATE -DROUNDS_MAX=2 -DTAKE_BACKS=1"
   [two-leaders]="-DLEASE=2 -DGUARD=0 -DV=3 -DK=2 -DT=1 -DC=2 -DFIRST=2 -DAHEAD=2 -DDELIVERIES=1 -DWITHOUT_ELECTORS -DGATE -DROUNDS_MAX=2 -DTWO_LEADERS"
 )
+# After it no fault comes any more: a run without end in which something is left to do is an acceptance cycle.
+readonly healing="-DV=3 -DK=10 -DHELD=1 -DTENDERS -DWORKS -DGUARD=0 -DFIRST=2 -DROUNDS_MAX=1 -DCRASHES=1 -DHEALS -DHEARD_TOGETHER"
+declare -Ar healings=(
+  [healing]="$healing -DLEASE=2 -DT=1 -DC=1 -DWITHOUT_ELECTORS -DLEADER_STAYS -DROUNDS_END=3 -DFAULT_TICKS=2"
+  [healing-take-over]="$healing -DLEASE=3 -DSILENCE=2 -DT=2 -DC=4 -DSTANDS -DROUNDS_END=5 -DFAULT_TICKS=1"
+)
 # Not two-leaders: it is larger than 4 GB.
-readonly order=(leases leases-crash authority rejoining gate)
+readonly order=(leases leases-crash authority rejoining gate healing healing-take-over)
 
 # mutant configuration: where it is found
 readonly mutants=(
   "LEASE_TOO_LONG=1 leases" "NO_CLOCK_GUARD leases" "BID_KEEPS_TASK leases"
   "NO_PROMISES authority" "SUCCESSOR_DOES_NOT_WAIT authority" "HALF_IS_ENOUGH authority"
   "OLD_LEAVING_COUNTS rejoining" "OLD_RENEWAL_COUNTS rejoining"
+  "ASKS_ONCE healing" "LEASES_NEVER_END healing"
   "GATE_WITHOUT_GRANT gate" "GATE_WITHOUT_LEASE gate" "LATE_COPY_GRANTS gate"
 )
 
@@ -41,8 +48,10 @@ search() {
   local at=$work/$1
   shift
   mkdir -p "$at" && cp "$here"/*.pml "$at"
-  (cd "$at" && spin "$@" -a explore.pml >spin.out && cc -O2 -w -DSAFETY -DCOLLAPSE -DMEMLIM=4000 -o pan pan.c &&
-    ./pan -m1000000 >out 2>&1) || { cat "$at"/*.out "$at/out" 2>/dev/null; return 1; }
+  local -a search=(-DSAFETY) run=()
+  [[ $* != *-DHEALS* ]] || { search=(-DNOREDUCE) && run=(-a); }
+  (cd "$at" && spin "$@" -a explore.pml >spin.out && cc -O2 -w "${search[@]}" -DCOLLAPSE -DMEMLIM=4000 -o pan pan.c &&
+    ./pan "${run[@]}" -m1000000 >out 2>&1) || { cat "$at"/*.out "$at/out" 2>/dev/null; return 1; }
 }
 figures() {
   awk '/states, stored/ { states = $1 } /total actual memory/ { mb = $1 } /elapsed time/ { s = $4 } /errors:/ { e = $NF }
@@ -55,7 +64,7 @@ verify() {
   for name in "$@"; do
     # Options are words on purpose.
     # shellcheck disable=SC2086
-    search "$name" ${configurations[$name]}
+    search "$name" ${configurations[$name]:-${healings[$name]}}
     printf 'model: %-16s %s\n' "$name" "$(figures "$work/$name/out")"
     if ! grep -q 'errors: 0' "$work/$name/out" || grep -q 'Search not completed\|max search depth too small' "$work/$name/out"; then
       grep '^pan' "$work/$name/out"
@@ -70,8 +79,8 @@ find_mutants() {
   for line in "${mutants[@]}"; do
     read -r mutant name <<<"$line"
     # shellcheck disable=SC2086
-    search mutant ${configurations[$name]} -DMUTANT_"$mutant"
-    if grep -q 'assertion violated' "$work/mutant/out"; then
+    search mutant ${configurations[$name]:-${healings[$name]}} -DMUTANT_"$mutant"
+    if grep -q 'assertion violated\|acceptance cycle\|invalid end state' "$work/mutant/out"; then
       printf 'model: %-26s is found in %s: %s\n' "$mutant" "$name" "$(figures "$work/mutant/out")"
     else
       printf 'model: %-26s is not found in %s\n' "$mutant" "$name"
