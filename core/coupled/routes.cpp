@@ -22,7 +22,7 @@ constexpr int kSteps = 8;                     ///< and after one was
 constexpr double kRounding = 1e-9;            ///< of sums of prices, amply
 constexpr std::uint64_t kRoutesToClock = 64;  ///< made before the clock is asked again
 constexpr std::uint64_t kNodesToClock = 8;
-constexpr std::size_t kRoutesOfNode = 200;
+constexpr std::size_t kRoutesOfNode = 50;
 
 }  // namespace
 

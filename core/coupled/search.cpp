@@ -45,7 +45,7 @@ constexpr double kCritical = 0.8;     ///< chance that the first is on a longest
 constexpr std::uint64_t kStepsBeforeRoutes = 200;
 constexpr std::uint64_t kRoutesPerStep = 20;
 constexpr std::uint64_t kNodesPerStep = 5;
-constexpr std::uint64_t kNodesLeast = 8000;
+constexpr std::uint64_t kNodesLeast = 5000;
 constexpr double kOnPath = 1.0 - 1e-9;  ///< of the makespan: the length of a longest path
 
 }  // namespace
