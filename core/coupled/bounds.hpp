@@ -19,6 +19,10 @@ class Bounds {
   /// Its survey by one vehicle, its delivery by the same or another, its assessment by the same or
   /// another. O(open tasks x vehicles).
   [[nodiscard]] double chains(const PartialPlan& plan);
+  /// Of the last chains(): no plan that completes it does an open task at an earlier time.
+  [[nodiscard]] double head_s(Index task) const { return head_s_[at(task)]; }
+  /// From the end of a task to that of what waits for it at its site, at least.
+  [[nodiscard]] double tail_s(Index task) const { return tail_s_[at(task)]; }
 
   /// By places: could the open tasks have a place each, as the first, second, third ... of what a
   /// vehicle has still to do, for less than `limit`? `false` is certain. A task's time at a place

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "bounds.hpp"
 #include "model.hpp"
 #include "partial.hpp"
+#include "routes.hpp"
 #include "search.hpp"
 
 namespace skein::planning::coupled {
@@ -16,20 +18,23 @@ constexpr std::uint64_t kSeed = 1;
 constexpr std::uint64_t kFirstSearchStepsPerTask = 5;
 constexpr std::uint64_t kFirstSearchNodes = 500;
 constexpr std::uint64_t kNodesPerSearchStep = 12;
+// And so do routes.
+constexpr std::uint64_t kRoutesPerNode = 20;
+constexpr std::uint64_t kCoverNodesLeast = 4000;  ///< and as many as the tree has
 
 /// Depth first over partial plans, the most promising first.
 class Tree {
  public:
-  Tree(const Model& model, const PlanningBudget& budget);
+  Tree(const Model& model, Search& search, const PlanningBudget& budget);
 
   /// From the plan of a search, which goes on in between.
-  void run(Search& search);
-  /// From a plan.
-  void run(const Orders& orders, double cost);
+  void run();
 
   [[nodiscard]] double best_cost() const { return best_cost_; }
   [[nodiscard]] const Orders& best() const { return best_; }
-  [[nodiscard]] double bound() const { return std::min(open_bound_, best_cost_); }
+  [[nodiscard]] double bound() const {
+    return is_covered_ ? best_cost_ : std::min(open_bound_, best_cost_);
+  }
   [[nodiscard]] bool is_proven() const { return bound() >= threshold(); }
   [[nodiscard]] std::uint64_t nodes() const { return nodes_; }
 
@@ -44,8 +49,8 @@ class Tree {
     return best_cost_ == kInfinity ? kInfinity
                                    : best_cost_ - kCoupledTolerance * std::abs(best_cost_);
   }
-  void run();
   void search(std::uint64_t steps);
+  void cover();
   void take(const Orders& orders, double cost);
   void explore(double bound);
   void make_children(std::vector<Child>& children);
@@ -53,7 +58,7 @@ class Tree {
 
   const Model& model_;
   const PlanningBudget& budget_;
-  Search* search_ = nullptr;
+  Search& search_;
   std::uint64_t next_search_ = kFirstSearchNodes;
   PartialPlan plan_;
   Bounds bounds_;
@@ -63,36 +68,40 @@ class Tree {
   double open_bound_ = kInfinity;  ///< of what was not explored
   std::uint64_t nodes_ = 0;
   bool stopped_ = false;
+  std::optional<Routes> routes_;
+  bool is_covered_ = false;  ///< routes prove the best
 };
 
-Tree::Tree(const Model& model, const PlanningBudget& budget)
+Tree::Tree(const Model& model, Search& search, const PlanningBudget& budget)
     : model_{model},
       budget_{budget},
+      search_{search},
       plan_{model},
       bounds_{model},
       children_(model.tasks.size() + 1) {}
 
-void Tree::run(Search& search_between) {
-  search_ = &search_between;
-  search(kFirstSearchStepsPerTask * model_.tasks.size());
-  run();
-}
-
-void Tree::run(const Orders& orders, double cost) {
-  take(orders, cost);
-  run();
-}
-
 void Tree::run() {
+  search(kFirstSearchStepsPerTask * model_.tasks.size());
   const double bound = bounds_.chains(plan_);
   if (bound < threshold()) explore(bound);
 }
 
 void Tree::search(std::uint64_t steps) {
   for (std::uint64_t k = 0; k < steps && !(budget_.expired && budget_.expired()); ++k) {
-    search_->step();
+    search_.step();
   }
-  if (search_->best_cost() < best_cost_) take(search_->best(), search_->best_cost());
+  if (search_.best_cost() < best_cost_) take(search_.best(), search_.best_cost());
+}
+
+/// Makespans: what is proven by routes needs no tree.
+void Tree::cover() {
+  if (!can_cover(model_) || best_cost_ == kInfinity) return;
+  if (!routes_) routes_.emplace(model_);
+  const double before = best_cost_;
+  const Routes::Effort effort{kRoutesPerNode * nodes_, std::max(kCoverNodesLeast, nodes_)};
+  const auto outcome = routes_->improve(best_, best_cost_, effort, budget_);
+  if (best_cost_ < before) search_.take(best_);
+  if (outcome == Routes::Outcome::done) is_covered_ = stopped_ = true;
 }
 
 void Tree::take(const Orders& orders, double cost) {
@@ -106,8 +115,9 @@ void Tree::explore(double bound) {
     open_bound_ = std::min(open_bound_, bound);
     return;
   }
-  if (++nodes_ == next_search_ && search_ != nullptr) {
+  if (++nodes_ == next_search_) {
     search(nodes_ / kNodesPerSearchStep);
+    cover();
     next_search_ *= 2;
   }
   if (plan_.may_end()) {
@@ -175,14 +185,6 @@ void Tree::try_task(std::vector<Child>& children, Index task) {
 
 }  // namespace
 
-Finish finish(const Model& model, const Orders& orders, std::uint64_t nodes,
-              const PlanningBudget& budget) {
-  const PlanningBudget limited{nodes, budget.expired};
-  Tree tree{model, limited};
-  tree.run(orders, Timing{model}.evaluate(orders) + left_out_cost(model, orders));
-  return {tree.best(), tree.is_proven()};
-}
-
 /// A wait that had to be lengthened may cost more than the bound, which knows of none.
 void mark(const Model& model, double bound_cost, bool proven, CoupledPlan& plan) {
   plan.bound = model.objective(bound_cost);
@@ -199,8 +201,8 @@ Result<CoupledPlan> branch_and_bound(const CoupledProblem& problem, const Planni
   if (!model) return model.error();
   Random random{coupled::kSeed};
   coupled::Search search{*model, random};
-  coupled::Tree tree{*model, budget};
-  tree.run(search);
+  coupled::Tree tree{*model, search, budget};
+  tree.run();
   if (tree.best_cost() == coupled::kInfinity) {
     return coupled::no_plan(*model, tree.is_proven() ? coupled::Sought::everywhere
                                                      : coupled::Sought::within_the_budget);

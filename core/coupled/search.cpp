@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "routes.hpp"
+
 namespace skein::planning::coupled {
 namespace {
 
@@ -38,15 +40,13 @@ constexpr double kAnew = 0.5;         ///< chance that a cycle does not go on fr
 constexpr int kRuinMostOfPaths = 15;  ///< tasks taken out at once, and not only a part of all
 constexpr double kAny = 0.5;          ///< chance that they are any, not near to each other
 constexpr double kCritical = 0.8;     ///< chance that the first is on a longest path
-// What few tasks are left to chance is done: the tree of all plans is small.
-constexpr std::uint64_t kStepsBeforeTree = 200;
-constexpr std::uint64_t kTreeNodes = 500;
-constexpr Index kTreeTasksMax = 12;
+// Plans made of routes, in between: after so many steps, then each time that there are twice as
+// many.
+constexpr std::uint64_t kStepsBeforeRoutes = 200;
+constexpr std::uint64_t kRoutesPerStep = 20;
+constexpr std::uint64_t kNodesPerStep = 5;
+constexpr std::uint64_t kNodesLeast = 5000;
 constexpr double kOnPath = 1.0 - 1e-9;  ///< of the makespan: the length of a longest path
-
-bool is_small(const Model& model) {
-  return model.criterion == Criterion::makespan && model.task_count() <= kTreeTasksMax;
-}
 
 }  // namespace
 
@@ -472,6 +472,27 @@ double Search::least_score_at(const Solution& plan, Index vehicle, std::size_t p
   return score + its.search_weight_per_s * (end_s - last_end_s);
 }
 
+namespace {
+
+/// Makespans: searches and, in between, enumerates routes. True when the best is proven.
+bool search_and_cover(const Model& model, Search& search, const PlanningBudget& budget) {
+  Routes routes{model};
+  for (std::uint64_t due = kStepsBeforeRoutes; !budget.is_spent(search.steps());) {
+    search.step();
+    if (search.steps() < due || search.best_cost() == kInfinity) continue;
+    due = 2 * search.steps();
+    Orders orders = search.best();
+    double cost = search.best_cost();
+    const Routes::Effort effort{kRoutesPerStep * search.steps(),
+                                std::max(kNodesLeast, kNodesPerStep * search.steps())};
+    const auto outcome = routes.improve(orders, cost, effort, budget);
+    if (cost < search.best_cost()) search.take(orders);
+    if (outcome == Routes::Outcome::done) return true;
+  }
+  return false;
+}
+
+}  // namespace
 }  // namespace skein::planning::coupled
 
 namespace skein::planning {
@@ -482,13 +503,10 @@ Result<CoupledPlan> ruin_and_recreate(const CoupledProblem& problem, Random& ran
   if (!model) return model.error();
   coupled::Search search{*model, random};
   bool proven = false;
-  while (!proven && !budget.is_spent(search.steps())) {
-    search.step();
-    const bool is_due = search.steps() == coupled::kStepsBeforeTree;
-    if (!is_due || !coupled::is_small(*model) || search.best_cost() == coupled::kInfinity) continue;
-    const auto finish = coupled::finish(*model, search.best(), coupled::kTreeNodes, budget);
-    search.take(finish.orders);
-    proven = finish.proven;
+  if (coupled::can_cover(*model)) {
+    proven = coupled::search_and_cover(*model, search, budget);
+  } else {
+    while (!budget.is_spent(search.steps())) search.step();
   }
   if (search.best_cost() == coupled::kInfinity) {
     return coupled::no_plan(*model, coupled::Sought::within_the_budget);

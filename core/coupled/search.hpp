@@ -100,14 +100,7 @@ class Search {
   std::vector<Place> places_;  ///< each with the least that it could score
 };
 
-/// What branch_and_bound makes of a plan in so many nodes.
-struct Finish {
-  Orders orders;
-  bool proven = false;  ///< no plan is better
-};
 /// Says of a plan what is known of the best that could be.
 void mark(const Model& model, double bound_cost, bool proven, CoupledPlan& plan);
-[[nodiscard]] Finish finish(const Model& model, const Orders& orders, std::uint64_t nodes,
-                            const PlanningBudget& budget);
 
 }  // namespace skein::planning::coupled

@@ -185,6 +185,13 @@ constexpr std::array kCriteria{NamedCriterion{"value", Criterion::value},
         add("fresh_10ms/skein" + end, search, draw, by, 0.010, kFresh, kFreshInstances);
       }
     }
+    if (by == Criterion::makespan) {
+      add("fresh_10ms/skein/makespan_8x8", search, CoupledDraw{.sites = 8, .vehicles = 8}, by,
+          0.010, kFresh, kFreshInstances);
+      add("fresh_10ms/skein/makespan_4x6_two_deliveries", search,
+          CoupledDraw{.sites = 4, .vehicles = 6, .deliveries = 2}, by, 0.010, kFresh,
+          kFreshInstances);
+    }
     CoupledDraw draw;
     draw.vehicles = 56;
     draw.deliveries = 6;

@@ -141,4 +141,20 @@ export default [
     from: 'survey_end_s_[at(i)] + std::max(model_.decide_wait_s, between_s(i, tasks.survey, t));',
     to: 'survey_end_s_[at(i)] + model_.decide_wait_s + between_s(i, tasks.survey, t);',
   },
+  {
+    name: 'routes-dropped-too-soon',
+    slip: 'a route is dropped though it is worth all but what there is to spare',
+    promise: 'nothing is better than a plan that routes prove',
+    file: 'core/coupled/routes.cpp',
+    from: 'return routes_[r].worth < most_[at(routes_[r].vehicle)] - room;',
+    to: 'return routes_[r].worth < most_[at(routes_[r].vehicle)] - 0.5 * room;',
+  },
+  {
+    name: 'routes-with-tails-too-long',
+    slip: 'what must follow a task is taken to last half as long again',
+    promise: 'nothing is better than a plan that routes prove',
+    file: 'core/coupled/routes.cpp',
+    from: 'free_s + tail_s[t] >= limit_) return false;',
+    to: 'free_s + 1.5 * tail_s[t] >= limit_) return false;',
+  },
 ];

@@ -150,6 +150,7 @@ inline constexpr double kCoupledTolerance = 1e-9;
 
 /// Optimal, or the best so far with a bound when the budget is spent (a step is a node). Depth
 /// first over plans built in the order of their times, from the plan of a short ruin and recreate.
+/// A makespan is also proven by what routes single vehicles can have, and which fit together.
 /// Deterministic; more steps never give a worse plan or a worse bound. Fails where there is no
 /// plan, or none was found within the budget; the sentence tells which.
 [[nodiscard]] Result<CoupledPlan> branch_and_bound(const CoupledProblem& problem,
@@ -158,7 +159,8 @@ inline constexpr double kCoupledTolerance = 1e-9;
 /// Ruin and recreate (Schrimpf 2000; operators chosen adaptively, Ropke and Pisinger 2006): tasks
 /// are taken out of the plan and put back where they cost least; a step is one such change.
 /// Anytime: more steps never give a worse plan. The same generator gives the same plan. A makespan
-/// of up to twelve tasks is mostly proven by a branch and bound in between, which ends the search.
+/// of up to 64 tasks is also sought by routes in between (branch_and_bound): they mostly prove it
+/// where tasks are few, about twenty, which ends the search.
 [[nodiscard]] Result<CoupledPlan> ruin_and_recreate(const CoupledProblem& problem, Random& random,
                                                     const PlanningBudget& budget);
 
