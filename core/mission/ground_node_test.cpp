@@ -67,7 +67,7 @@ TEST(GroundNode, WhoseSecondProgramIsSilentIsWorkedWithAgainWhoeverSpeaksFirst) 
     telemetry.instance = instance;
     telemetry.state.time = at_seconds(seconds);
     ground.on_message(telemetry, vehicle, at_seconds(seconds));
-    Setup setup;
+    mission::Setup setup;
     setup.node = vehicle;
     setup.instance = instance;
     setup.time = at_seconds(seconds);
