@@ -243,7 +243,10 @@ TEST(ProtocolChecks, AForgottenTaskIsFoundUnlessTheOperatorRefused) {
   EXPECT_EQ(check_completion(record, {}).violations.size(), 3U);
   record.ground_events = {event(kGroundStation, 36.0, EventKind::authorisation_refused, kEastward)};
   EXPECT_THAT(failed(record), IsEmpty());
+  // By another ground station, which has not heard of the refusal.
   record.ground_events.push_back(event(kGroundStation, 40.0, EventKind::authorised, kEastward));
+  EXPECT_THAT(failed(record), IsEmpty());
+  record.ground_events = {event(kGroundStation, 40.0, EventKind::authorised, kEastward)};
   EXPECT_THAT(failed(record), ElementsAre("completion"));
 }
 
