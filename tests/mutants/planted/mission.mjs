@@ -37,7 +37,7 @@ export default [
     promise: 'an authorisation ends',
     file: flyer,
     from: 'return now <= message.until && std::ranges::any_of(message.deliveries, is_ours);',
-    to: 'return std::ranges::any_of(message.deliveries, is_ours);',
+    to: 'return now < Instant::max() && std::ranges::any_of(message.deliveries, is_ours);',
   },
   {
     name: 'older-refusal-hides-the-newer',
@@ -90,8 +90,10 @@ export default [
   const double turn_m = kTwoPi * planning_radius_m();
   return range_to_spend(at) - flight_.way_home_m(there, hazards()) - spec().assess_radius_m -
          turn_m;`,
-    to: `  const double turn_m = kTwoPi * planning_radius_m();
-  return range_to_spend(at) - spec().assess_radius_m - turn_m;`,
+    to: `  const Pose2 there{site.position.x(), site.position.y(), 0.0};
+  const double turn_m = kTwoPi * planning_radius_m();
+  return range_to_spend(at) - 0.0 * flight_.way_home_m(there, hazards()) - spec().assess_radius_m -
+         turn_m;`,
   },
   {
     name: 'turns-for-home-late',
