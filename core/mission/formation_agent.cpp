@@ -20,6 +20,8 @@ Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m};
 /// Who waits for longer says so.
 constexpr Duration kLongWait = std::chrono::seconds{3};
 
+/// So far from its reference, one that flies the same change does not follow it.
+constexpr double kAstray_m = 2.0;
 /// Who stopped before another waits until that has moved by so much.
 constexpr double kStirs_m = 0.3;
 
@@ -142,11 +144,16 @@ void FormationAgent::on_status(const FormationStatus& status, Instant now) {
   }
 }
 
-/// Who is where nobody expects it is kept clear of by where it is.
+/// Who is where nobody expects it is kept clear of by where it is, until it flies what this vehicle
+/// flies. Of who does, Passage knows how far it is off, and who goes first; it does not reckon with
+/// one that is flown by others.
 void FormationAgent::look_out_for(const FormationStatus& status) {
-  if (status.progress.off_m > config_.passage.tolerance_m) {
+  const bool flies_the_same = status.progress.change == number_;
+  const double allowed_m = flies_the_same ? kAstray_m : config_.passage.tolerance_m;
+  const bool is_known = !strays_.empty() && strays_.contains(status.vehicle);
+  if (status.progress.off_m > allowed_m || (is_known && !flies_the_same)) {
     strays_[status.vehicle] = status.position_m;
-  } else if (!strays_.empty()) {
+  } else if (is_known && status.progress.off_m <= config_.passage.tolerance_m) {
     strays_.erase(status.vehicle);
   }
 }

@@ -283,7 +283,8 @@ std::optional<std::size_t> FormationGround::may_fly(const Change& change, Vehicl
 /// On its way to the goal of the change that it was heard in, or of one that it may have taken up
 /// since.
 std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& member) const {
-  if (member.piloted) return {member.status.position_m};
+  const bool is_seen = now_ - member.heard_at < config_.silence;
+  if (member.piloted && is_seen) return {member.status.position_m};
   const Vec3& seen = member.status.reference_m;
   std::vector<Vec3> places{seen};
   // The others stop before where it was heard to be beside it (FormationAgent).
@@ -332,7 +333,7 @@ std::string FormationGround::unknown() const {
     const bool ours = number == 0 || std::any_of(sent_.begin(), sent_.end(), [&](const auto& sent) {
                         return sent.number == number && number > recalled_;
                       });
-    if (found->second.lost && !ours) {
+    if (found->second.lost && !found->second.piloted && !ours) {
       return name_of(vehicle) + " is silent, where it flew to is not known,";
     }
   }
@@ -431,6 +432,8 @@ void FormationGround::on_telemetry(const Telemetry& telemetry, Instant now) {
   const auto found = members_.find(telemetry.vehicle);
   if (found == members_.end()) return;
   Member& member = found->second;
+  if (telemetry.state.time < member.telemetry_at) return;  // late, or said twice
+  member.telemetry_at = telemetry.state.time;
   member.piloted = shown_state(telemetry.activity, telemetry.detail) == ShownState::piloted;
   if (member.piloted && !member.lost) {
     lose(telemetry.vehicle, member, FormationNews::astray, now);
@@ -447,6 +450,8 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
   const auto [found, is_new] = members_.try_emplace(status.vehicle);
   Member& member = found->second;
   member.status = status;
+  member.heard = true;
+  member.heard_at = now;
   const bool astray = status.progress.off_m > (member.lost ? 0.5 : 1.0) * kAstray_m;
   if (member.piloted || astray) {
     if (!member.lost) lose(status.vehicle, member, FormationNews::astray, now);
@@ -458,8 +463,6 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
   // A ground station before this one has commanded it.
   succeeds_ = succeeds_ || status.progress.change > number_;
   member.lost = false;
-  member.heard = true;
-  member.heard_at = now;
   const auto goal = goal_of(status.vehicle);
   if (!goal || status.progress.change != number_) return;
   member.place_error_m = (*goal - member.trim_m - status.position_m).norm();

@@ -126,6 +126,8 @@ class Aircraft {
   /// As it is recorded: in true time, with numbers that grow over all nodes. Null of a vehicle in a
   /// formation, and of a copter that has not come to its height yet.
   [[nodiscard]] const mission::FlightPlan* plan() const;
+  /// There is something that it follows.
+  [[nodiscard]] bool is_led() const { return guidance_.has_value(); }
   /// Where a multirotor should be, and how fast; nothing while it sinks.
   [[nodiscard]] std::optional<MotionTrack::Moment> reference(Instant now) const;
   /// How far it is from where it should be.

@@ -310,7 +310,7 @@ class Team {
     const Duration lasts = fault.lasts.value_or(Duration{});
     for (const VehicleId id : who) {
       const std::size_t i = ether_.index_of(id);
-      const bool has_guidance = i >= ether_.ground() || vehicles_[i].plan() != nullptr;
+      const bool has_guidance = i >= ether_.ground() || vehicles_[i].is_led();
       if (!ether_.stations()[i].on || !has_guidance) continue;
       stands_until_[i] = std::max(stands_until_[i], now + lasts);
       tell(now, FaultEvent::Kind::stands_still, id, fmt::format("for {:.2f} s", to_seconds(lasts)),

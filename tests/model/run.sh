@@ -80,7 +80,7 @@ find_mutants() {
     read -r mutant name <<<"$line"
     # shellcheck disable=SC2086
     search mutant ${configurations[$name]:-${healings[$name]}} -DMUTANT_"$mutant"
-    if grep -q 'assertion violated\|acceptance cycle\|invalid end state' "$work/mutant/out"; then
+    if grep -q 'errors: [1-9]' "$work/mutant/out"; then
       printf 'model: %-26s is found in %s: %s\n' "$mutant" "$name" "$(figures "$work/mutant/out")"
     else
       printf 'model: %-26s is not found in %s\n' "$mutant" "$name"

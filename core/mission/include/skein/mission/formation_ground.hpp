@@ -93,6 +93,7 @@ class FormationGround {
     bool heard = false;                 ///< by this process, not only recalled
     bool lost = false;                  ///< silent, piloted, or far from its reference
     bool piloted = false;               ///< others fly it, by its telemetry
+    Instant telemetry_at{};             ///< of which that is
     std::optional<Instant> arrived_at;  ///< in the newest change
     double place_error_m = 0.0;         ///< from its place; of no meaning on the way
     Vec3 drift_m = Vec3::Zero();        ///< place less position, over the last seconds
