@@ -19,6 +19,18 @@ TEST(Ownship, LooksAtItsRangeAgainWhileItCanStillComeHome) {
   EXPECT_GT(2.0 * there_m + turn_m, 0.9 * bench.ownship.range_left(bench.now)) << "and no sooner";
 }
 
+/// Else it would be awarded what it cannot come home from.
+TEST(Ownship, WhatIsLeftForASiteIsWithoutTheWayHomeFromThere) {
+  PartsBench bench;
+  Site near = test_site(1);
+  Site far = test_site(2);
+  near.position = {500.0, 0.0};
+  far.position = {2500.0, 0.0};
+  const double near_m = bench.ownship.range_for(near, bench.now);
+  EXPECT_NEAR(near_m - bench.ownship.range_for(far, bench.now), 2000.0, 50.0);
+  EXPECT_LT(near_m, bench.ownship.range_to_spend(bench.now) - 400.0);
+}
+
 /// With the margin that wind and gusts take.
 TEST(Ownship, PlansWithWiderTurnsThanItCanFly) {
   VehicleAgentConfig config = plane_config();
