@@ -366,9 +366,7 @@ TEST(RuinAndRecreate, MoreStepsAreNeverWorseAndASeedIsAPlan) {
 TEST(RuinAndRecreate, ASmallMakespanIsProven) {
   for (std::uint64_t seed = 40; seed < 52; ++seed) {
     Random draws{seed};
-    CoupledProblem problem = draw_problem(draws, {.sites = 4, .vehicles = 6});
-    problem.criterion = Criterion::makespan;
-    problem.flyable_waits = false;
+    CoupledProblem problem = draw_makespan(draws, {.sites = 4, .vehicles = 6});
     const auto best = branch_and_bound(problem, {});
     Random random{1};
     const auto plan = ruin_and_recreate(problem, random, {.steps_max = 1000, .expired = {}});

@@ -73,4 +73,12 @@ inline CoupledProblem draw_problem(Random& random, const CoupledDraw& draw) {
   return problem;
 }
 
+/// Of a makespan, whose plans last as long as their bounds say: waits need not be flown.
+inline CoupledProblem draw_makespan(Random& random, const CoupledDraw& draw) {
+  CoupledProblem problem = draw_problem(random, draw);
+  problem.criterion = Criterion::makespan;
+  problem.flyable_waits = false;
+  return problem;
+}
+
 }  // namespace skein::planning

@@ -17,9 +17,7 @@ using ::testing::IsEmpty;
 CoupledProblem mission(std::uint64_t seed) {
   Random random{seed};
   CoupledProblem problem =
-      draw_problem(random, {.sites = 2, .vehicles = 9, .deliveries = 2, .assessments = 1});
-  problem.criterion = Criterion::makespan;
-  problem.flyable_waits = false;
+      draw_makespan(random, {.sites = 2, .vehicles = 9, .deliveries = 2, .assessments = 1});
   problem.share = TaskShare::one_a_site;
   problem.decide_wait = std::chrono::seconds{10};
   return problem;

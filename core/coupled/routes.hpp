@@ -31,7 +31,7 @@ class Routes {
     std::uint64_t nodes = 0;   ///< plans begun, at most
   };
   enum class Outcome : std::uint8_t {
-    too_many,  ///< routes: nothing was tried
+    too_many,  ///< routes for the effort, or for the time: not all are known, and none was tried
     cut_off,   ///< there may be a better plan
     done       ///< there is none
   };

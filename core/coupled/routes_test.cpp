@@ -126,9 +126,7 @@ TEST(Routes, EqualTheTreeOnThreeSites) {
     Random random{900 + seed};
     CoupledDraw draw;
     draw.vehicles = 4 + seed % 3;
-    CoupledProblem problem = draw_problem(random, draw);
-    problem.criterion = Criterion::makespan;
-    problem.flyable_waits = false;
+    CoupledProblem problem = draw_makespan(random, draw);
     const auto exact = branch_and_bound(problem, {});
     ASSERT_TRUE(exact.ok() && exact->proven);
     ASSERT_LT(exact->steps, 500U);
@@ -167,9 +165,7 @@ TEST(Routes, SayWhenTheyWereCutOff) {
 TEST(Routes, ProveWhatTheTreeAloneWouldNot) {
   for (std::uint64_t seed = 100; seed < 106; ++seed) {
     Random draws{seed};
-    CoupledProblem problem = draw_problem(draws, {.sites = 6, .vehicles = 6});
-    problem.criterion = Criterion::makespan;
-    problem.flyable_waits = false;
+    CoupledProblem problem = draw_makespan(draws, {.sites = 6, .vehicles = 6});
     const auto exact = branch_and_bound(problem, {.steps_max = 2000, .expired = {}});
     Random random{1};
     const auto found = ruin_and_recreate(problem, random, {.steps_max = 800, .expired = {}});

@@ -21,7 +21,7 @@ Vec3 here(const VehicleState& state) { return {state.x_m, state.y_m, state.z_m};
 constexpr Duration kLongWait = std::chrono::seconds{3};
 
 /// So far from its reference, one that flies the same change does not follow it.
-constexpr double kAstray_m = 2.0;
+constexpr double kFollowsWithin_m = 2.0;
 /// Who stopped before another waits until that has moved by so much.
 constexpr double kStirs_m = 0.3;
 
@@ -102,7 +102,6 @@ void FormationAgent::on_change(const Change& change, Instant now) {
   for (const formation::Mover& mover : change.movers) {
     if (mover.vehicle != config_.vehicle) not_begun_.insert(mover.vehicle);
   }
-  execution_->hold(waits());
   arrived_ = false;
   waits_since_.reset();
   report(event::ChangeTakenUp{change.number}, now);
@@ -131,7 +130,7 @@ void FormationAgent::on_status(const FormationStatus& status, Instant now) {
   const auto mover = formation::mover_of(*change_, status.vehicle);
   if (!mover) return;
   if (status.progress.change == change_->number) {
-    if (not_begun_.erase(status.vehicle) > 0) execution_->hold(waits());
+    not_begun_.erase(status.vehicle);
     execution_->on_progress(*mover, status.progress, status.reference_m);
   } else if (status.progress.change < change_->number) {
     // It has not taken up the change, and stays where it is: perhaps not where the change begins.
@@ -149,7 +148,7 @@ void FormationAgent::on_status(const FormationStatus& status, Instant now) {
 /// one that is flown by others.
 void FormationAgent::look_out_for(const FormationStatus& status) {
   const bool flies_the_same = status.progress.change == number_;
-  const double allowed_m = flies_the_same ? kAstray_m : config_.passage.tolerance_m;
+  const double allowed_m = flies_the_same ? kFollowsWithin_m : config_.passage.tolerance_m;
   const bool is_known = !strays_.empty() && strays_.contains(status.vehicle);
   if (status.progress.off_m > allowed_m || (is_known && !flies_the_same)) {
     strays_[status.vehicle] = status.position_m;
@@ -196,20 +195,15 @@ void FormationAgent::on_command(const Command& command, Instant now) {
   const bool holds = command.kind == CommandKind::hold;
   if (!holds && command.kind != CommandKind::resume) return;
   held_ = holds;
-  if (execution_) execution_->hold(waits());
   report(event::Commanded{command.kind}, now);
 }
 
-void FormationAgent::on_bar(Bar bar, Instant /*now*/) {
-  bar_ = bar;
-  if (execution_) execution_->hold(waits());
-}
+void FormationAgent::on_bar(Bar bar, Instant /*now*/) { bar_ = bar; }
 
 void FormationAgent::on_piloted(bool piloted, Instant now) {
   if (std::exchange(piloted_, piloted) == piloted || !state_) return;
   if (piloted) {
     if (!change_ && !rests_at_) rests_at_ = here(*state_);
-    if (execution_) execution_->hold(waits());
   } else {
     rests_at_ = here(*state_);
     change_.reset();
@@ -249,10 +243,10 @@ void FormationAgent::step(Instant now) {
   const double off = off_m(now);
   if (change_) {
     execution_->set_off(off);
+    execution_->hold(waits());
     execution_->step(now);
     track_ = execution_->track();
     if (!stray_ahead_ || !is_there_yet(*stray_ahead_)) stray_ahead_ = nears();
-    execution_->hold(waits());
     if (!arrived_ && execution_->finished()) {
       arrived_ = true;
       report(event::PlaceReached{change_->number}, now);

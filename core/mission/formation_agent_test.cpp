@@ -126,7 +126,6 @@ TEST(FormationAgent, WhomItsPilotHasTakesUpNothingAndRestsWhereItIsGivenBack) {
   copter.fly(5.0);
   EXPECT_EQ(copter.events().back().kind(), EventKind::change_taken_up) << "it waits for nobody";
   const Vec3 there{5.0, 7.0, 12.0};
-  (void)copter.events();
   copter.tell(ahead(2));
   const auto refused = copter.events();
   ASSERT_EQ(refused.size(), 1U);

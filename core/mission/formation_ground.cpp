@@ -434,7 +434,7 @@ void FormationGround::on_telemetry(const Telemetry& telemetry, Instant now) {
   Member& member = found->second;
   if (telemetry.state.time < member.telemetry_at) return;  // late, or said twice
   member.telemetry_at = telemetry.state.time;
-  member.piloted = shown_state(telemetry.activity, telemetry.detail) == ShownState::piloted;
+  member.piloted = is_piloted(telemetry);
   if (member.piloted && !member.lost) {
     lose(telemetry.vehicle, member, FormationNews::astray, now);
   }

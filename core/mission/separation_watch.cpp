@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "skein/mission/guidance.hpp"
+#include "skein/mission/shown_state.hpp"
 
 namespace skein::mission {
 namespace {
@@ -99,7 +100,7 @@ void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& o
   }
   const ActivityDetail in_detail = other.detail;
   known.gives_way_too = in_detail == ActivityDetail::avoiding_traffic;
-  known.piloted = in_detail == ActivityDetail::piloted;
+  known.piloted = is_piloted(other);
   known.instance = other.instance;
   known.state = other.state;
   known.activity = other.activity;

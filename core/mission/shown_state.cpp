@@ -82,6 +82,10 @@ ShownState shown_state(Activity activity, ActivityDetail in_detail) {
   return kStates.at(static_cast<std::size_t>(in_detail) - 1);
 }
 
+bool is_piloted(const Telemetry& telemetry) {
+  return shown_state(telemetry.activity, telemetry.detail) == ShownState::piloted;
+}
+
 ShownState shown_state(const FleetEntry& entry) {
   const Telemetry& told = *entry.telemetry;
   const ActivityDetail in_detail = told.detail;

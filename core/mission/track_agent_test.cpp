@@ -31,15 +31,7 @@ class Cockpit {
   }
   void step(Duration by = std::chrono::milliseconds{50}) {
     now += by;
-    if (plan) {
-      const Pose2 pose = plan->timed.pose_at(now);
-      state_.x_m = pose.x_m;
-      state_.y_m = pose.y_m;
-      state_.heading_rad = state_.course_rad = pose.heading_rad;
-    }
-    state_.time = now;
-    agent_.on_state(state_, now);
-    drain();
+    put(plan ? plan->timed.pose_at(now) : state_.pose());
   }
   void fly(double seconds) {
     for (const Instant until = now + from_seconds(seconds); now < until;) step();

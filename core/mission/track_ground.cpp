@@ -184,8 +184,7 @@ void TrackGround::on_message(const Message& message, Instant now) {
     const auto member = members_.find(telemetry->vehicle);
     if (member == members_.end()) return;
     member->second.range_left_m = telemetry->range_left_m;
-    member->second.piloted =
-        shown_state(telemetry->activity, telemetry->detail) == ShownState::piloted;
+    member->second.piloted = is_piloted(*telemetry);
   } else if (const auto* hazard = std::get_if<HazardReport>(&message)) {
     know(*hazard);
   }

@@ -17,6 +17,8 @@ command -v spin >/dev/null || {
 
 # What is bounded, by configuration: what they look at is in docs/model.md.
 times='-DLEASE=2 -DGUARD=1 -DV=3 -DK=2'
+# After it no fault comes any more: a run without end in which something is left to do is an acceptance cycle.
+healing="-DV=3 -DK=10 -DHELD=1 -DTENDERS -DWORKS -DGUARD=0 -DFIRST=2 -DROUNDS_MAX=1 -DCRASHES=1 -DHEALS -DHEARD_TOGETHER"
 declare -Ar configurations=(
   [leases]="$times -DT=1 -DC=1 -DFIRST=1 -DTENDERS -DWITHOUT_ELECTORS -DROUNDS_MAX=2"
   [leases-crash]="$times -DT=1 -DC=1 -DFIRST=1 -DTENDERS -DWITHOUT_ELECTORS -DROUNDS_MAX=1 -DCRASHES=1 -DWORKS"
@@ -24,10 +26,6 @@ declare -Ar configurations=(
   [rejoining]="-DLEASE=1 -DGUARD=0 -DV=3 -DK=2 -DT=3 -DC=2 -DFIRST=1 -DAUTHORITY -DROUNDS_MAX=1 -DCRASHES=1 -DWITHDRAWALS -DREJOINS"
   [gate]="$times -DT=1 -DC=2 -DFIRST=1 -DAHEAD=2 -DDELIVERIES=1 -DWITHOUT_ELECTORS -DGATE -DROUNDS_MAX=2 -DTAKE_BACKS=1"
   [two-leaders]="-DLEASE=2 -DGUARD=0 -DV=3 -DK=2 -DT=1 -DC=2 -DFIRST=2 -DAHEAD=2 -DDELIVERIES=1 -DWITHOUT_ELECTORS -DGATE -DROUNDS_MAX=2 -DTWO_LEADERS"
-)
-# After it no fault comes any more: a run without end in which something is left to do is an acceptance cycle.
-readonly healing="-DV=3 -DK=10 -DHELD=1 -DTENDERS -DWORKS -DGUARD=0 -DFIRST=2 -DROUNDS_MAX=1 -DCRASHES=1 -DHEALS -DHEARD_TOGETHER"
-declare -Ar healings=(
   [healing]="$healing -DLEASE=2 -DT=1 -DC=1 -DWITHOUT_ELECTORS -DLEADER_STAYS -DROUNDS_END=3 -DFAULT_TICKS=2"
   [healing-take-over]="$healing -DLEASE=3 -DSILENCE=2 -DT=2 -DC=4 -DSTANDS -DROUNDS_END=5 -DFAULT_TICKS=1"
 )
@@ -64,7 +62,7 @@ verify() {
   for name in "$@"; do
     # Options are words on purpose.
     # shellcheck disable=SC2086
-    search "$name" ${configurations[$name]:-${healings[$name]}}
+    search "$name" ${configurations[$name]}
     printf 'model: %-16s %s\n' "$name" "$(figures "$work/$name/out")"
     if ! grep -q 'errors: 0' "$work/$name/out" || grep -q 'Search not completed\|max search depth too small' "$work/$name/out"; then
       grep '^pan' "$work/$name/out"
@@ -79,7 +77,7 @@ find_mutants() {
   for line in "${mutants[@]}"; do
     read -r mutant name <<<"$line"
     # shellcheck disable=SC2086
-    search mutant ${configurations[$name]:-${healings[$name]}} -DMUTANT_"$mutant"
+    search mutant ${configurations[$name]} -DMUTANT_"$mutant"
     if grep -q 'errors: [1-9]' "$work/mutant/out"; then
       printf 'model: %-26s is found in %s: %s\n' "$mutant" "$name" "$(figures "$work/mutant/out")"
     else

@@ -51,7 +51,9 @@ enum class ShownState : std::uint8_t {
 
 /// As a vehicle has told it last.
 [[nodiscard]] ShownState shown_state(Activity activity, ActivityDetail in_detail);
-/// The same of one that was heard, where it is known what it goes on with after it has kept clear
+/// By its own word others fly it.
+[[nodiscard]] bool is_piloted(const Telemetry& telemetry);
+/// The same as shown_state() of one that was heard, where it is known what it goes on with after it has kept clear
 /// of traffic: that it holds or comes home by order, which lasts longer.
 [[nodiscard]] ShownState shown_state(const FleetEntry& entry);
 /// It keeps clear of traffic besides what shown_state() says.
