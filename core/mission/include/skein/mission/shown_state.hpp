@@ -53,8 +53,8 @@ enum class ShownState : std::uint8_t {
 [[nodiscard]] ShownState shown_state(Activity activity, ActivityDetail in_detail);
 /// By its own word others fly it.
 [[nodiscard]] bool is_piloted(const Telemetry& telemetry);
-/// The same as shown_state() of one that was heard, where it is known what it goes on with after it has kept clear
-/// of traffic: that it holds or comes home by order, which lasts longer.
+/// The same as shown_state() of one that was heard, where it is known what it goes on with after it
+/// has kept clear of traffic: that it holds or comes home by order, which lasts longer.
 [[nodiscard]] ShownState shown_state(const FleetEntry& entry);
 /// It keeps clear of traffic besides what shown_state() says.
 [[nodiscard]] bool keeps_clear_besides(const FleetEntry& entry);
