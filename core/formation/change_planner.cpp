@@ -32,7 +32,7 @@ constexpr double kRounding_m = 1e-3;
 constexpr double kCreep_s = 0.1;
 /// Ways out for who makes room: up, and so many to the side, in such parts of what is to be between
 /// two.
-constexpr int kRoomDirections = 16;
+constexpr int kRoomDirections = 32;
 constexpr int kRoomSteps = 4;
 constexpr int kRoomStepsMax = 5 * kRoomSteps;
 
@@ -100,9 +100,10 @@ class Planner {
     return stretched(request_.transfers[a].from - request_.transfers[b].from).norm();
   }
   /// Nobody there is late, so no reserve is needed; and who is nearer already may leave.
-  [[nodiscard]] double keep_out_wanted_m(std::size_t vehicle, const KeepOut& keep_out) const {
+  [[nodiscard]] double keep_out_wanted_m(std::size_t vehicle, const KeepOut& keep_out,
+                                         double of_start = 1.0) const {
     const double from_m = distance_m(request_.transfers[vehicle].from, keep_out, height_factor_);
-    return std::min(request_.separation.horizontal_m, from_m - kRounding_m);
+    return std::min(request_.separation.horizontal_m, of_start * from_m - kRounding_m);
   }
   [[nodiscard]] bool clear_of_keep_outs(const Change& change, std::size_t vehicle) const;
   [[nodiscard]] bool rests_too_near(std::size_t vehicle) const;
@@ -361,8 +362,11 @@ bool Planner::rests_too_near(std::size_t vehicle) const {
 
 bool Planner::clear_of_keep_outs(const Change& change, std::size_t vehicle) const {
   const ChangeMotion motion{change};
+  // Away from the ways that somebody may have flown, the best of the directions is off by half of
+  // what is between two, and so passes their points nearer than it starts.
+  const double off_rad = kPi / kRoomDirections;
   return std::ranges::all_of(request_.keep_outs, [&](const KeepOut& keep_out) {
-    const double wanted = keep_out_wanted_m(vehicle, keep_out);
+    const double wanted = keep_out_wanted_m(vehicle, keep_out, std::cos(off_rad));
     return keep_out_distance(motion, vehicle, keep_out, wanted) >= wanted;
   });
 }

@@ -214,15 +214,7 @@ Result<void> FormationGround::above_ground(const std::vector<Transfer>& transfer
 
 Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
                                                std::vector<Transfer> transfers) const {
-  formation::ChangeRequest request;
-  request.transfers = std::move(transfers);
-  request.limits = config_.limits;
-  request.separation = separation();
-  request.reserve_m = config_.reserve_m;
-  request.ceiling_m = config_.ceiling_m;
-  if (config_.fence.exists()) {
-    request.ceiling_m = std::min(request.ceiling_m, config_.fence.height_max_m);
-  }
+  const formation::ChangeRequest request = request_for(std::move(transfers));
   if (order.kind != OrderKind::land) {
     if (auto stranger = unknown(); !stranger.empty()) {
       return Error{stranger + " and may be in the way; land, or wait until it is heard"};
@@ -232,24 +224,42 @@ Result<FormationPreview> FormationGround::plan(const FormationOrder& order,
   for (const auto& [vehicle, member] : members_) {
     if (member.lost) lost.push_back(vehicle);
   }
-  request.keep_outs = keep_outs();
   auto planned = formation::plan_change(request);
   if (planned) {
     if (auto inside = within_fence(planned->change); !inside) return inside.error();
     return FormationPreview{order, std::move(*planned), std::move(lost), std::nullopt};
   }
-  auto room = formation::make_room(request, [&](const Transfer& way) {
-    // Those that stand on the ground are put further apart.
-    if (way.from.z() < std::min(kSidewaysAbove_m, config_.rally.centre.z())) return false;
-    const Change alone{.movers = {{way.vehicle, {way.from, way.to}, 0}}};
-    return may_be_flown({way}).ok() && within_fence(alone).ok();
-  });
+  auto room = room_made(request);
   if (!room) return planned.error();
   const auto makes_room = std::ranges::find_if(
       room->change.movers,
       [](const formation::Mover& mover) { return mover.points.front() != mover.points.back(); });
   const VehicleId who = makes_room->vehicle;
   return FormationPreview{order, std::move(*room), std::move(lost), who};
+}
+
+formation::ChangeRequest FormationGround::request_for(std::vector<Transfer> transfers) const {
+  formation::ChangeRequest request;
+  request.transfers = std::move(transfers);
+  request.keep_outs = keep_outs();
+  request.limits = config_.limits;
+  request.separation = separation();
+  request.reserve_m = config_.reserve_m;
+  request.ceiling_m = config_.ceiling_m;
+  if (config_.fence.exists()) {
+    request.ceiling_m = std::min(request.ceiling_m, config_.fence.height_max_m);
+  }
+  return request;
+}
+
+std::optional<formation::PlannedChange> FormationGround::room_made(
+    const formation::ChangeRequest& request) const {
+  return formation::make_room(request, [&](const Transfer& way) {
+    // Those that stand on the ground are put further apart.
+    if (way.from.z() < std::min(kSidewaysAbove_m, config_.rally.centre.z())) return false;
+    const Change alone{.movers = {{way.vehicle, {way.from, way.to}, 0}}};
+    return may_be_flown({way}).ok() && within_fence(alone).ok();
+  });
 }
 
 /// References are so much further apart as both vehicles may be beside them.
@@ -506,6 +516,7 @@ void FormationGround::on_timeout(Instant now) {
     messages_.push(*change_);
   }
   judge_places(now);
+  clear_columns(now);
   if (give_again_) give_again(now);
   if (held_since_ && now - *held_since_ >= kDriftKnownAfter) correct_drift(now);
 }
@@ -554,6 +565,41 @@ void FormationGround::find_stuck(Instant now) {
     warn(FormationNews::not_begun, {who}, now);
   }
   withdrawn_ = now - *stuck_since_ >= kStuck + kMessageLife;
+}
+
+/// It moves only if it is told to.
+bool FormationGround::rests(VehicleId vehicle, const Member& member) const {
+  if (member.lost || !member.status.at_rest) return false;
+  return std::ranges::none_of(sent_, [&](const Change& change) {
+    return change.number > member.status.progress.change && mover_of(change, vehicle);
+  });
+}
+
+/// Who is lost above others may come down before all rest: who rests below is led out at once,
+/// alone, clear of whatever the others may fly.
+void FormationGround::clear_columns(Instant now) {
+  const bool one_leaves = makes_room_ && is_sent_ && now < change_->start;
+  if (one_leaves || barred_.why() || !unknown().empty()) return;
+  const auto columns = keep_outs();
+  const formation::Separation apart = separation();
+  for (const auto& [vehicle, member] : members_) {
+    const Vec3& here = member.status.reference_m;
+    const bool below = std::ranges::any_of(columns, [&](const formation::KeepOut& column) {
+      return distance_m(here, column, height_factor(apart)) < apart.horizontal_m;
+    });
+    if (!below || !rests(vehicle, member)) continue;
+    auto request = request_for({{vehicle, here, here}});
+    for (const auto& [other, others] : members_) {
+      if (other == vehicle || others.lost) continue;
+      for (const Vec3& place : may_be(other, others)) {
+        request.keep_outs.push_back({other, place, place});
+      }
+    }
+    auto room = room_made(request);
+    if (!room) continue;
+    begin({*order_, std::move(*room), {}, vehicle}, now);
+    return;
+  }
 }
 
 void FormationGround::give_again(Instant now) {

@@ -31,6 +31,7 @@ class Team {
     }
   }
   void lose(std::size_t index) { vehicles_.at(index).lost = true; }
+  void come_back(std::size_t index) { vehicles_.at(index).lost = false; }
   /// The ground station is not.
   void is_heard_by_nobody(bool so) { mute_ = so; }
   void start_anew(std::size_t index, const Vec3& place) {
@@ -376,6 +377,26 @@ TEST(FormationGround, WhoHasNotHeardOfTheRoomToBeMadeIsToldAgain) {
   team.is_heard_by_nobody(false);
   ASSERT_TRUE(team.until([&] { return (team.position(0) - team.position(1)).norm() > 3.9; }));
   EXPECT_EQ(team.count(EventKind::change_begun), 2U) << "by the same change";
+}
+
+TEST(FormationGround, WhoRestsBelowOneThatIsLostLeavesWhileOthersStillFly) {
+  Team team{{{0.0, 0.0, 0.0}, {0.0, 6.0, 0.0}, {0.0, 120.0, 0.0}}};
+  ASSERT_TRUE(team.goes_up());
+  team.lose(0);
+  ASSERT_TRUE(team.until([&] { return team.ground().members().at({1}).lost; }));
+  // The second is led over the first, the third far along.
+  FormationOrder order = line_around({0.0, 0.0, 10.0});
+  order.shape.spacing_m = 12.0;
+  ASSERT_TRUE(team.command(order).ok());
+  const auto beside_m = [&] { return (team.position(1) - team.position(0)).head<2>().norm(); };
+  ASSERT_TRUE(team.until([&] { return beside_m() < 0.5; }));
+  team.lose(1);
+  team.come_back(0);
+  ASSERT_TRUE(team.until([&] { return beside_m() > 2.99; }));
+  EXPECT_FALSE(team.ground().members().at({3}).status.at_rest);
+  EXPECT_GT((team.position(2) - Vec3{0.0, 6.0, 10.0}).norm(), 3.0);
+  ASSERT_TRUE(team.until([&] { return team.ground().in_place(); })) << "the order is given again";
+  EXPECT_FALSE(team.ground().members().at({1}).lost);
 }
 
 TEST(FormationGround, WhoStandTooNearAreNotLedApart) {

@@ -228,10 +228,12 @@ void Aircraft::follow(const mission::Guidance& guidance) {
   guidance_.emplace(numbered);
 }
 
+/// As an autopilot lands: over one place, whatever gusts do.
 void Aircraft::sink_at(Instant now) {
+  if (!sinks_over_m_) sinks_over_m_ = state_.position().horizontal();
   PositionSetpoint down;
-  down.x_m = state_.x_m;
-  down.y_m = state_.y_m;
+  down.x_m = sinks_over_m_->x();
+  down.y_m = sinks_over_m_->y();
   down.z_m = state_.z_m;
   down.vz_mps = -kSink_mps;
   body_->command(down, now);

@@ -169,6 +169,7 @@ class Aircraft {
   mission::FlightPlan recorded_;
   std::uint32_t numbers_before_ = 0;  ///< plans of earlier nodes and of the flight controller
   std::optional<Instant> sinks_from_;
+  std::optional<Vec2> sinks_over_m_;
   std::uint8_t loads_left_ = 0;
 };
 

@@ -117,6 +117,10 @@ class FormationGround {
   [[nodiscard]] Result<void> above_ground(const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
                                               std::vector<formation::Transfer> transfers) const;
+  [[nodiscard]] formation::ChangeRequest request_for(
+      std::vector<formation::Transfer> transfers) const;
+  [[nodiscard]] std::optional<formation::PlannedChange> room_made(
+      const formation::ChangeRequest& request) const;
   [[nodiscard]] Result<void> may_be_flown(const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] static std::optional<std::size_t> may_fly(const formation::Change& change,
                                                           VehicleId vehicle, const Member& member);
@@ -130,6 +134,8 @@ class FormationGround {
   void lose(VehicleId vehicle, Member& member, event::FormationNews why, Instant now);
   [[nodiscard]] bool is_led(VehicleId vehicle) const;
   void find_stuck(Instant now);
+  [[nodiscard]] bool rests(VehicleId vehicle, const Member& member) const;
+  void clear_columns(Instant now);
   void give_again(Instant now);
   void judge_places(Instant now);
   [[nodiscard]] bool stay_off(const std::vector<VehicleId>& who, Instant now);
