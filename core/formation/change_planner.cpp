@@ -32,9 +32,12 @@ constexpr double kRounding_m = 1e-3;
 constexpr double kCreep_s = 0.1;
 /// Ways out for who makes room: up, and so many to the side, in such parts of what is to be between
 /// two.
-constexpr int kRoomDirections = 32;
+constexpr int kRoomDirections = 16;
 constexpr int kRoomSteps = 4;
 constexpr int kRoomStepsMax = 5 * kRoomSteps;
+/// Of what it starts from, whoever is led out keeps so much from where others may be: the best of
+/// the directions passes points of a way nearer than it starts, and to stay is worse.
+constexpr double kNearerOnTheWayOut = 0.9;
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
@@ -100,11 +103,11 @@ class Planner {
     return stretched(request_.transfers[a].from - request_.transfers[b].from).norm();
   }
   /// Nobody there is late, so no reserve is needed; and who is nearer already may leave.
-  [[nodiscard]] double keep_out_wanted_m(std::size_t vehicle, const KeepOut& keep_out,
-                                         double of_start = 1.0) const {
+  [[nodiscard]] double keep_out_wanted_m(std::size_t vehicle, const KeepOut& keep_out) const {
     const double from_m = distance_m(request_.transfers[vehicle].from, keep_out, height_factor_);
-    return std::min(request_.separation.horizontal_m, of_start * from_m - kRounding_m);
+    return std::min(request_.separation.horizontal_m, from_m - kRounding_m);
   }
+  [[nodiscard]] bool starts_in_keep_out_of(VehicleId other, std::size_t vehicle) const;
   [[nodiscard]] bool clear_of_keep_outs(const Change& change, std::size_t vehicle) const;
   [[nodiscard]] bool rests_too_near(std::size_t vehicle) const;
   [[nodiscard]] bool is_outside(const Vec3& place) const;
@@ -360,13 +363,23 @@ bool Planner::rests_too_near(std::size_t vehicle) const {
   return false;
 }
 
+bool Planner::starts_in_keep_out_of(VehicleId other, std::size_t vehicle) const {
+  return std::ranges::any_of(request_.keep_outs, [&](const KeepOut& keep_out) {
+    return keep_out.vehicle == other &&
+           distance_m(request_.transfers[vehicle].from, keep_out, height_factor_) <
+               request_.separation.horizontal_m;
+  });
+}
+
+/// Of who is led out of keep-outs. From below another the shortest way is the best, whichever
+/// vertical it crosses.
 bool Planner::clear_of_keep_outs(const Change& change, std::size_t vehicle) const {
   const ChangeMotion motion{change};
-  // Away from the ways that somebody may have flown, the best of the directions is off by half of
-  // what is between two, and so passes their points nearer than it starts.
-  const double off_rad = kPi / kRoomDirections;
   return std::ranges::all_of(request_.keep_outs, [&](const KeepOut& keep_out) {
-    const double wanted = keep_out_wanted_m(vehicle, keep_out, std::cos(off_rad));
+    const bool is_column = keep_out.from != keep_out.to;
+    if (is_column && starts_in_keep_out_of(keep_out.vehicle, vehicle)) return true;
+    const double from_m = distance_m(request_.transfers[vehicle].from, keep_out, height_factor_);
+    const double wanted = std::min(request_.separation.horizontal_m, kNearerOnTheWayOut * from_m);
     return keep_out_distance(motion, vehicle, keep_out, wanted) >= wanted;
   });
 }

@@ -18,6 +18,8 @@ constexpr Duration kCommitLead = std::chrono::seconds{1};
 /// Later than this before the gate control could no longer take the new plan over in time.
 constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
 constexpr double kRunOut = 2.0;  ///< times the lead of turns, over the site and straight on
+constexpr double kLateFrom_s = 0.1;
+constexpr double kBeyond_s = 0.5;  ///< who is later than that flies straight on so much longer
 constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two looks at a task's time
 /// That it has not bid is told for so long.
@@ -351,9 +353,13 @@ void TaskFlyer::commit_delivery(Instant now) {
   }
 }
 
-/// Straight on over the site, where no hazard is: the turn away, begun early, would be over it.
+/// Straight on over the site, where no hazard is: the turn away, begun early, would be over it, or
+/// before it for who is late.
 void TaskFlyer::run_out(Path& path, double speed_mps) const {
-  const double length_m = kRunOut * ownship_.config().turn_lead_s * speed_mps;
+  double length_m = kRunOut * ownship_.config().turn_lead_s * speed_mps;
+  if (const double late_m = ownship_.late_m(); late_m > kLateFrom_s * speed_mps) {
+    length_m += late_m + kBeyond_s * speed_mps;
+  }
   if (length_m <= 0.0) return;
   const Segment straight{0.0, length_m};
   Path beyond{path.end(), {}};

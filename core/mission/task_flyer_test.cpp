@@ -271,6 +271,26 @@ TEST(TaskFlyer, DeliversWithAGrantUnderItsLease) {
   EXPECT_EQ(f.ownship.loads(), 0);
 }
 
+TEST(TaskFlyer, WhoIsLateTurnsAwayOnlyBeyondTheSite) {
+  for (const double late_m : {0.0, 12.0}) {
+    Flying f;
+    f.call();
+    f.award(60.0, 120.0);
+    f.grant();
+    f.beside_m = {0.0, -late_m};  // which is behind where it flies to the north
+    f.fly_until(59.0);
+    ASSERT_TRUE(f.flyer.in_run());
+    const auto heading_rad = [&](double s) {
+      return f.ownship.flight().pose_at(at_seconds(s)).heading_rad;
+    };
+    EXPECT_NEAR(heading_rad(60.0), kPi / 2.0, 1e-6);
+    const bool is_straight = std::abs(wrap_pi(heading_rad(60.9) - kPi / 2.0)) < 1e-6;
+    EXPECT_EQ(is_straight, late_m > 0.0);
+    f.fly_until(62.0);
+    EXPECT_EQ(f.reported(EventKind::task_done), 1);
+  }
+}
+
 /// The way there, timed as its plan has it, takes no more of the airspeed in one wind than in
 /// another.
 TEST(TaskFlyer, InWindItBidsAndPlansAtCruiseSpeedThroughTheAir) {

@@ -41,7 +41,8 @@ TurnRoom::TurnRoom(const VehicleSpec& vehicle, bool heeds_wind)
       radius_m_{vehicle.planning_radius_m()} {}
 
 double TurnRoom::held_radius_m() const {
-  const double stretched = 1.0 + wind_mps_.norm() / vehicle_.cruise_speed_mps;
+  const double gust_mps = std::sqrt(gusts_m2ps2_ / 2.0);  // along the wind, one deviation
+  const double stretched = 1.0 + (wind_mps_.norm() + gust_mps) / vehicle_.cruise_speed_mps;
   return vehicle_.turn_radius_m * stretched * stretched;
 }
 
@@ -54,7 +55,9 @@ bool TurnRoom::on_state(const VehicleState& state) {
   if (!first && since_s <= 0.0) return false;
   heard_s_ = std::min(heard_s_ + since_s, kMemory_s);
   const double weight = first ? 1.0 : since_s / heard_s_;
-  wind_mps_ += weight * (planning::wind_of(state) - wind_mps_);
+  const Vec2 other_mps = planning::wind_of(state) - wind_mps_;
+  wind_mps_ += weight * other_mps;
+  gusts_m2ps2_ += weight * ((1.0 - weight) * other_mps.squaredNorm() - gusts_m2ps2_);
   if (!first && heard_s_ < kTrusted_s) return false;
 
   const double held_m = held_radius_m();

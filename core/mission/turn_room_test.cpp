@@ -83,6 +83,16 @@ TEST(TurnRoom, GustsDoNotMakeItSwing) {
   EXPECT_LE(Circling{room}.fly(600.0, {-4.0, 3.0}, 1.5), 3);
 }
 
+TEST(TurnRoom, IsWiderInGusts) {
+  for (const double gust_mps : {1.0, 2.0}) {
+    TurnRoom room{plane(), true};
+    Circling{room}.fly(90.0, {4.0, 0.0}, gust_mps);
+    const double stretched = (25.0 + 4.0 + gust_mps) / 25.0;
+    EXPECT_GE(room.radius_m(), 66.0 * stretched * stretched) << gust_mps;
+    EXPECT_LE(room.radius_m(), 1.2 * 66.0 * stretched * stretched) << gust_mps;
+  }
+}
+
 TEST(TurnRoom, IsTighterAgainWhenTheWindDrops) {
   TurnRoom room{plane(), true};
   Circling circling{room};

@@ -14,6 +14,11 @@ constexpr double kNearestMax_m = 200.0;  ///< how far along from its time the ve
 constexpr int kNearestSteps = 4;
 constexpr double kBefore_m = 1e-3;   ///< there the plan's speed steps to what follows
 constexpr double kSettled_m = 1e-9;  ///< a step as small as that ends the search
+/// Where it is to be on time it is to be there on its course, too: so long before, and so long
+/// after, it leans towards its line by no more than that (3 degrees).
+constexpr double kLinedUpFor_s = 1.5;
+constexpr double kLinedUpAfter_s = 0.5;
+constexpr double kLeanMost = 0.05;
 
 /// Where the vehicle is on its path.
 struct Nearest {
@@ -119,6 +124,13 @@ double airspeed_rise(const TimedPath& plan, const PieceStarts& starts, double on
   return planned_airspeed(plan, poses, seen_m, wind_mps) - now_mps;
 }
 
+double lean_most(const TimedPath& plan, double distance_m, double speed_mps) {
+  const double to_go_s = (plan.on_time_m - distance_m) / std::max(1.0, speed_mps);
+  const bool lines_up =
+      plan.on_time_m > 0.0 && to_go_s < kLinedUpFor_s && to_go_s > -kLinedUpAfter_s;
+  return lines_up ? kLeanMost : std::numeric_limits<double>::infinity();
+}
+
 /// The most airspeed at that turn rate; cruise speed always may be flown.
 double turning_speed(const PathFollowerParams& params, const VehicleSpec& vehicle,
                      double rate_radps) {
@@ -146,13 +158,16 @@ Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicl
   const Vec2 wind = over_ground - state.airspeed_mps * unit_vector(state.heading_rad);
 
   // Course: towards the path, the steeper the farther.
-  const double lean = params.cross_track_gain_per_m * at.left_m;
+  const double leans = params.cross_track_gain_per_m * at.left_m;
+  const double most = lean_most(plan, at.on_time_m + at.ahead_m, state.groundspeed_mps);
+  const double lean = std::clamp(leans, -most, most);
   const double course = at.heading_rad - std::atan(lean);
   const double closing_mps = over_ground.dot(left_of(at.forward));
   const double along_mps =
       over_ground.dot(at.forward) / std::max(0.5, 1.0 - at.curvature_per_m * at.left_m);
-  const double course_rate = at.curvature_soon_per_m * along_mps -
-                             params.cross_track_gain_per_m * closing_mps / (1.0 + lean * lean);
+  const double leaning_rate =
+      lean == leans ? params.cross_track_gain_per_m * closing_mps / (1.0 + lean * lean) : 0.0;
+  const double course_rate = at.curvature_soon_per_m * along_mps - leaning_rate;
 
   // Velocity over the ground, and the velocity through the air that gives it.
   const double ground_mps = std::max(

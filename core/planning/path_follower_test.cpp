@@ -220,6 +220,32 @@ TEST(PathFollower, JoinsThePlanFromBesideAndLate) {
   }
 }
 
+TEST(PathFollower, IsOnItsCourseWhereItIsToBeOnTime) {
+  const VehicleSpec vehicle = vehicle_of(30.0, 1.5);
+  TimedPath plan = course_of(1.1 * vehicle.turn_radius_m, 30.0);
+  plan.on_time_m = 90.0;
+  for (const double beside_m : {-24.0, -10.0, 10.0, 24.0}) {
+    for (const double wind_mps : {0.0, 4.0}) {
+      const Pose2 start = plan.path.start;
+      Simulated s{.vehicle = vehicle,
+                  .wind = wind_mps * left_of(unit_vector(start.heading_rad)),
+                  .position = start.position() + beside_m * left_of(unit_vector(start.heading_rad)),
+                  .heading_rad = start.heading_rad - std::asin(wind_mps / 30.0),
+                  .airspeed_mps = 30.0};
+      for (int i = 0; i < 150; ++i) {
+        const Instant now = plan.start_time + from_seconds(i * 0.02);
+        s.fly(follow_path({}, vehicle, plan, s.state(now), now), 0.02);
+      }
+      const double course_rad = s.state(plan.start_time).course_rad;
+      EXPECT_LT(std::abs(wrap_pi(course_rad - start.heading_rad)), radians(4.0))
+          << beside_m << " " << wind_mps;
+      EXPECT_LT(
+          std::abs(follow_error(plan, s.state({}), plan.start_time + from_seconds(3.0)).cross_m),
+          0.7 * std::abs(beside_m));
+    }
+  }
+}
+
 TEST(PathFollower, ErrorsHaveTheirSigns) {
   TimedPath plan{.start_time = at_seconds(10.0),
                  .speed_mps = 50.0,

@@ -31,7 +31,9 @@ void AirspaceJudge::step(const std::vector<SeenBody>& bodies, Instant now) {
 void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<SeenBody>& bodies,
                              Instant now) {
   if (!bodies[a].airborne || !bodies[b].airborne) return;
-  if (bodies[a].adrift && bodies[b].adrift) return;  // by nobody's doing
+  // One comes down beside another, and neither has a program that could do anything about it.
+  const bool one_comes_down = bodies[a].adrift || bodies[b].adrift;
+  if (one_comes_down && bodies[a].ended && bodies[b].ended) return;
   const Vec3 stretch{1.0, 1.0, height_factor(limits_.separation)};
   const Vec3 begin = (before_[a].position_m - before_[b].position_m).cwiseProduct(stretch);
   const Vec3 end = (bodies[a].position_m - bodies[b].position_m).cwiseProduct(stretch);

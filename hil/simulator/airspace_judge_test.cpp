@@ -57,14 +57,17 @@ TEST(AirspaceJudge, SeesWhoPassBetweenTwoLooks) {
 }
 
 TEST(AirspaceJudge, LeavesAloneTwoThatNobodyFlies) {
-  for (const bool both : {true, false}) {
-    AirspaceJudge judge{kLimits};
-    std::vector<SeenBody> bodies{body(1, {0, 0, 20}), body(2, {1.5, 0, 20})};
-    bodies[0].adrift = true;
-    bodies[1].adrift = both;
-    judge.step(bodies, Instant{});
-    judge.step(bodies, Instant{} + 20ms);
-    EXPECT_THAT(judge.take(), SizeIs(both ? 0 : 1));
+  for (const bool both_ended : {true, false}) {
+    for (const bool comes_down : {true, false}) {
+      AirspaceJudge judge{kLimits};
+      std::vector<SeenBody> bodies{body(1, {0, 0, 20}), body(2, {1.5, 0, 20})};
+      bodies[0].ended = true;
+      bodies[0].adrift = comes_down;
+      bodies[1].ended = both_ended;
+      judge.step(bodies, Instant{});
+      judge.step(bodies, Instant{} + 20ms);
+      EXPECT_THAT(judge.take(), SizeIs(both_ended && comes_down ? 0 : 1));
+    }
   }
 }
 

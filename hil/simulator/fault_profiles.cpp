@@ -27,7 +27,7 @@ constexpr std::uint64_t kMixStream = 0x6661756c74730002;
 constexpr double kSiteRoom_m = 60.0;
 constexpr double kEverywhere_m = 1e6;
 constexpr Duration kHeldBackMax = seconds{2};
-constexpr double kGustMax_mps = 1.5;
+constexpr double kGustMax_mps = 2.0;
 constexpr std::size_t kLostMax = 2;
 constexpr double kLayer_m = 15.0;
 /// From here on vehicles are numbered that fly under a number of the team.
