@@ -339,6 +339,27 @@ TEST(MakeRoom, LeadsOneOutAndNobodyNearer) {
   }
 }
 
+/// Between the air below one that is lost and the way that another may have flown: the only way out
+/// crosses below the first, and not nearer to where that is.
+TEST(MakeRoom, LeadsOutFromBelowByTheShortestWay) {
+  ChangeRequest request = request_of({{0, 0.3, 15}});
+  request.keep_outs.push_back({{8}, {0, 0, 17.8}, {0, 0, 17.8}});
+  request.keep_outs.push_back({{8}, {0, 0, 17.8}, {0, 0, 0}});
+  for (double x = -20.0; x <= 20.0; x += 0.5) {
+    request.keep_outs.push_back({{9}, {x, 2, 15}, {x, 2, 15}});
+    request.keep_outs.push_back({{9}, {x, 2, 15}, {x, 2, 0}});
+  }
+  const auto room = make_room(request, anywhere);
+  ASSERT_TRUE(room);
+  const Vec3 to = room->change.movers[0].points.back();
+  EXPECT_GE(to.head<2>().norm(), 3.0 - 2e-3);
+  EXPECT_LE(to.y(), -1.0 + 2e-3);
+  const ChangeMotion motion{room->change};
+  for (Duration t{}; t <= motion.duration(); t += std::chrono::milliseconds{20}) {
+    EXPECT_GE(distance_m(motion.position(0, t), request.keep_outs.front(), 1.0), 0.9 * 2.81);
+  }
+}
+
 TEST(MakeRoom, TakesOnlyWaysThatAreAllowed) {
   const auto near = request_of({{0, 0, 20}, {3, 0, 20}});
   EXPECT_FALSE(make_room(near, [](const Transfer& /*way*/) { return false; }));
