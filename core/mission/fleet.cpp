@@ -71,9 +71,7 @@ void Fleet::on_telemetry(const Telemetry& telemetry, Instant now) {
   }
 
   if (!entry.telemetry || entry.silent || changed) due_ = Instant::min();
-  const bool older =
-      entry.telemetry && !changed && telemetry.state.time < entry.telemetry->state.time;
-  if (!older) entry.telemetry = telemetry;
+  if (!is_late(telemetry)) entry.telemetry = telemetry;
   if (entry.silent) {
     entry.silent = false;
     warn(FleetNews::heard_again, vehicle, now - entry.heard_at);
@@ -112,6 +110,13 @@ Instant Fleet::next_timeout() const {
 bool Fleet::expects(VehicleId vehicle) const {
   const auto found = vehicles_.find(vehicle);
   return found != vehicles_.end() && found->second.expected;
+}
+
+bool Fleet::is_late(const Telemetry& telemetry) const {
+  const auto known = vehicles_.find(telemetry.vehicle);
+  if (known == vehicles_.end() || !known->second.telemetry) return false;
+  const Telemetry& newest = *known->second.telemetry;
+  return newest.instance == telemetry.instance && telemetry.state.time < newest.state.time;
 }
 
 bool Fleet::duplicate(VehicleId vehicle) const {

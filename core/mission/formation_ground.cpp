@@ -442,8 +442,6 @@ void FormationGround::on_telemetry(const Telemetry& telemetry, Instant now) {
   const auto found = members_.find(telemetry.vehicle);
   if (found == members_.end()) return;
   Member& member = found->second;
-  if (telemetry.state.time < member.telemetry_at) return;  // late, or said twice
-  member.telemetry_at = telemetry.state.time;
   member.piloted = is_piloted(telemetry);
   if (member.piloted && !member.lost) {
     lose(telemetry.vehicle, member, FormationNews::astray, now);

@@ -99,11 +99,13 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
     return true;
   }
   if (const auto* setup = std::get_if<Setup>(&message)) on_setup(*setup, now);
-  if (const auto* telemetry = std::get_if<Telemetry>(&message)) {
+  const auto* telemetry = std::get_if<Telemetry>(&message);
+  if (telemetry != nullptr) {
     setup_.on_time(sender, telemetry->state.time, now);
     take_differences(sender, now);
   }
   agent_.on_message(message, now);
+  if (telemetry != nullptr && fleet().is_late(*telemetry)) return true;  // heard, and no news
   sites_.on_message(message, now);
   hazards_.on_message(message);
   routes_.on_message(message, now);

@@ -259,6 +259,25 @@ TEST(GroundNode, ARevokedVehicleIsNotWorkedWithUntilItIsEnrolledAnew) {
   EXPECT_TRUE(ground.agent().command(kVehicle, CommandKind::hold, at_seconds(1.3)).ok());
 }
 
+TEST(GroundNode, ALateCopyOfTelemetryGivesNobodyBack) {
+  GroundNode ground = node();
+  FormationStatus status;
+  status.vehicle = kVehicle;
+  ground.on_message(status, kVehicle, at_seconds(1.0));
+  Telemetry flown = telemetry_of(Activity::holding);
+  flown.state.time = at_seconds(1.0);
+  Telemetry piloted = flown;
+  piloted.detail = ActivityDetail::piloted;
+  piloted.state.time = at_seconds(2.0);
+  for (const Telemetry& heard : {flown, piloted, flown}) {
+    EXPECT_TRUE(ground.on_message(heard, kVehicle, at_seconds(2.0)));
+  }
+  EXPECT_TRUE(ground.formation().members().at(kVehicle).piloted);
+  flown.state.time = at_seconds(3.0);
+  ground.on_message(flown, kVehicle, at_seconds(3.0));
+  EXPECT_FALSE(ground.formation().members().at(kVehicle).piloted);
+}
+
 template <class T>
 std::vector<T> said_of(GroundNode& ground) {
   std::vector<T> found;

@@ -209,8 +209,8 @@ export default [
     slip: 'telemetry that comes late takes the place of newer',
     promise: 'the one picture is the newest that was heard',
     file: 'core/mission/fleet.cpp',
-    from: 'entry.telemetry && !changed && telemetry.state.time < entry.telemetry->state.time;',
-    to: 'entry.telemetry && changed && telemetry.state.time < entry.telemetry->state.time;',
+    from: 'if (!is_late(telemetry)) entry.telemetry = telemetry;',
+    to: 'entry.telemetry = telemetry;',
   },
   {
     name: 'piloted-flies-its-change-on',

@@ -63,6 +63,8 @@ class Fleet {
   [[nodiscard]] const std::map<VehicleId, FleetEntry>& vehicles() const { return vehicles_; }
   [[nodiscard]] bool expects(VehicleId vehicle) const;
   [[nodiscard]] bool duplicate(VehicleId vehicle) const;
+  /// A copy that comes after what its vehicle has said since.
+  [[nodiscard]] bool is_late(const Telemetry& telemetry) const;
 
   /// These are out of the mission, and no others.
   void set_revoked(const std::set<VehicleId>& revoked);

@@ -79,7 +79,7 @@ class FormationGround {
   /// What this ground station, or one before it, said or heard then: it knows who flies what, and
   /// whom it does not hear. Before anything else.
   void recall(const Message& message, VehicleId sender);
-  /// Of who may say it (may_say()).
+  /// Of who may say it (may_say()), and of telemetry none that is late (Fleet::is_late()).
   void on_message(const Message& message, Instant now);
   void on_timeout(Instant now);
   [[nodiscard]] std::optional<Message> poll_message() { return messages_.pop(); }
@@ -93,7 +93,6 @@ class FormationGround {
     bool heard = false;                 ///< by this process, not only recalled
     bool lost = false;                  ///< silent, piloted, or far from its reference
     bool piloted = false;               ///< others fly it, by its telemetry
-    Instant telemetry_at{};             ///< of which that is
     std::optional<Instant> arrived_at;  ///< in the newest change
     double place_error_m = 0.0;         ///< from its place; of no meaning on the way
     Vec3 drift_m = Vec3::Zero();        ///< place less position, over the last seconds

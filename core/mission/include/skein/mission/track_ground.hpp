@@ -60,7 +60,7 @@ class TrackGround {
   /// Nobody is led out of that one from now on.
   void set_fence(const Fence& fence) { config_.fence = fence; }
 
-  /// Of who may say it (may_say()).
+  /// Of who may say it (may_say()), and of telemetry none that is late (Fleet::is_late()).
   void on_message(const Message& message, Instant now);
   void know(const HazardReport& report);
   void on_timeout(Instant now);
