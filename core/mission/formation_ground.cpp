@@ -32,6 +32,8 @@ constexpr Duration kStuck = std::chrono::seconds{2};
 constexpr Duration kMessageLife = std::chrono::seconds{3};
 /// After the start of a change whoever moves in it does.
 constexpr Duration kSetOff = std::chrono::seconds{1};
+/// Who waits on its way for less may be off again before it hears of another.
+constexpr Duration kRests = std::chrono::seconds{1};
 constexpr Duration kTryAgain = std::chrono::seconds{5};
 /// Who is beside its place for so long will not come to it; gusts pass.
 constexpr Duration kStaysOff = std::chrono::seconds{5};
@@ -460,6 +462,7 @@ void FormationGround::on_status(const FormationStatus& status, Instant now) {
   member.status = status;
   member.heard = true;
   member.heard_at = now;
+  if (!status.at_rest) member.moved_at = now;
   const bool astray = status.progress.off_m > (member.lost ? 0.5 : 1.0) * kAstray_m;
   if (member.piloted || astray) {
     if (!member.lost) lose(status.vehicle, member, FormationNews::astray, now);
@@ -565,20 +568,22 @@ void FormationGround::find_stuck(Instant now) {
   withdrawn_ = now - *stuck_since_ >= kStuck + kMessageLife;
 }
 
-/// It moves only if it is told to.
+/// It has for a while, and takes up nothing that was sent.
 bool FormationGround::rests(VehicleId vehicle, const Member& member) const {
-  if (member.lost || !member.status.at_rest) return false;
+  if (member.lost || now_ - member.moved_at < kRests) return false;
   return std::ranges::none_of(sent_, [&](const Change& change) {
     return change.number > member.status.progress.change && mover_of(change, vehicle);
   });
 }
 
-/// Who is lost above others may come down before all rest: who rests below is led out at once,
-/// alone, clear of whatever the others may fly.
+/// Who is silent above others may come down before all rest: who rests below is led out at once,
+/// alone, clear of whatever the others may fly. A pilot sees on whom he comes down.
 void FormationGround::clear_columns(Instant now) {
-  const bool one_leaves = makes_room_ && is_sent_ && now < change_->start;
-  if (one_leaves || barred_.why() || !unknown().empty()) return;
-  const auto columns = keep_outs();
+  if (now < change_->start + kSetOff || barred_.why() || !unknown().empty()) return;
+  auto columns = keep_outs();
+  std::erase_if(columns, [this](const formation::KeepOut& column) {
+    return members_.at(column.vehicle).piloted;
+  });
   const formation::Separation apart = separation();
   for (const auto& [vehicle, member] : members_) {
     const Vec3& here = member.status.reference_m;

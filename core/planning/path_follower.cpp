@@ -124,6 +124,7 @@ double airspeed_rise(const TimedPath& plan, const PieceStarts& starts, double on
   return planned_airspeed(plan, poses, seen_m, wind_mps) - now_mps;
 }
 
+/// How steeply it may lean towards its line there, of the path.
 double lean_most(const TimedPath& plan, double distance_m, double speed_mps) {
   const double to_go_s = (plan.on_time_m - distance_m) / std::max(1.0, speed_mps);
   const bool lines_up =

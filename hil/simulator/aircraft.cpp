@@ -102,6 +102,8 @@ void Aircraft::start_program(const std::vector<Hazard>& hazards, Instant now) {
   shares_number_ = false;
   quiet_until_ = Instant::min();
   untold_.reset();
+  sinks_from_.reset();  // it is led again
+  sinks_over_m_.reset();
 }
 
 bool Aircraft::watches(const mission::Telemetry& other) const {

@@ -31,9 +31,6 @@ void AirspaceJudge::step(const std::vector<SeenBody>& bodies, Instant now) {
 void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<SeenBody>& bodies,
                              Instant now) {
   if (!bodies[a].airborne || !bodies[b].airborne) return;
-  // One comes down beside another, and neither has a program that could do anything about it.
-  const bool one_comes_down = bodies[a].adrift || bodies[b].adrift;
-  if (one_comes_down && bodies[a].ended && bodies[b].ended) return;
   const Vec3 stretch{1.0, 1.0, height_factor(limits_.separation)};
   const Vec3 begin = (before_[a].position_m - before_[b].position_m).cwiseProduct(stretch);
   const Vec3 end = (bodies[a].position_m - bodies[b].position_m).cwiseProduct(stretch);
@@ -41,8 +38,15 @@ void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<See
   const double squared = way.squaredNorm();
   const double share = squared > 0.0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
   const double apart = (begin + share * way).norm();
+  const bool near = apart < limits_.separation.horizontal_m;
+  // One comes down beside another, and neither has a program that could do anything about it; or
+  // one that has come too late.
+  const bool one_comes_down = bodies[a].adrift || bodies[b].adrift;
+  if (!near) met_unled_.erase({a, b});
+  if (near && one_comes_down && bodies[a].unled && bodies[b].unled) met_unled_.insert({a, b});
+  if (met_unled_.contains({a, b})) return;
   least_m_ = std::min(least_m_, apart);
-  if (apart >= limits_.separation.horizontal_m || !told_.insert({a, b}).second) return;
+  if (!near || !told_.insert({a, b}).second) return;
   violations_.push_back(
       {now, "separation",
        fmt::format("{} at ({:.2f} {:.2f} {:.2f}) and {} at ({:.2f} {:.2f} {:.2f}) are {:.2f} m "

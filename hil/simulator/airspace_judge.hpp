@@ -36,7 +36,9 @@ class AirspaceJudge {
 
   Limits limits_;
   std::vector<SeenBody> before_;
-  std::set<std::pair<std::size_t, std::size_t>> told_;
+  using Pair = std::pair<std::size_t, std::size_t>;
+  std::set<Pair> told_;
+  std::set<Pair> met_unled_;  ///< too near since one came down, and no program led either
   std::vector<FormationViolation> violations_;
   double least_m_ = std::numeric_limits<double>::infinity();
   double farthest_m_ = 0.0;

@@ -57,18 +57,38 @@ TEST(AirspaceJudge, SeesWhoPassBetweenTwoLooks) {
 }
 
 TEST(AirspaceJudge, LeavesAloneTwoThatNobodyFlies) {
-  for (const bool both_ended : {true, false}) {
+  for (const bool both_unled : {true, false}) {
     for (const bool comes_down : {true, false}) {
       AirspaceJudge judge{kLimits};
       std::vector<SeenBody> bodies{body(1, {0, 0, 20}), body(2, {1.5, 0, 20})};
-      bodies[0].ended = true;
+      bodies[0].unled = true;
       bodies[0].adrift = comes_down;
-      bodies[1].ended = both_ended;
+      bodies[1].unled = both_unled;
       judge.step(bodies, Instant{});
       judge.step(bodies, Instant{} + 20ms);
-      EXPECT_THAT(judge.take(), SizeIs(both_ended && comes_down ? 0 : 1));
+      EXPECT_THAT(judge.take(), SizeIs(both_unled && comes_down ? 0 : 1));
     }
   }
+}
+
+TEST(AirspaceJudge, WhoIsGivenBackBelowOneThatComesDownHasUntilItHasPassed) {
+  AirspaceJudge judge{kLimits};
+  std::vector<SeenBody> bodies{body(1, {0, 0, 20}), body(2, {1.5, 0, 20})};
+  bodies[0].unled = bodies[0].adrift = bodies[1].unled = true;
+  Instant now{};
+  const auto step = [&] { judge.step(bodies, now += 20ms); };
+  step();
+  step();
+  bodies[1].unled = false;
+  step();
+  EXPECT_THAT(judge.take(), IsEmpty());
+  bodies[0].position_m.z() = 10.0;  // and then another comes
+  step();
+  step();
+  bodies[0].position_m.z() = 20.0;
+  step();
+  step();
+  EXPECT_THAT(judge.take(), SizeIs(1));
 }
 
 TEST(AirspaceJudge, CountsHeightsByTheirOwnMinimum) {

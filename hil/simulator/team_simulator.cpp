@@ -619,7 +619,7 @@ class Team {
         moved_at_ = now;
       }
       bodies.push_back({v.spec().id, position, position.z() > MultirotorBody::kAirborne_m,
-                        v.off_m(now), !v.running(), !v.running() && !reference});
+                        v.off_m(now), !v.running() || v.piloted(), !v.running() && !reference});
     }
     if (observer_.bodies) observer_.bodies(now, bodies);
   }

@@ -90,6 +90,7 @@ class FormationGround {
   struct Member {
     FormationStatus status;
     Instant heard_at{};
+    Instant moved_at{};                 ///< heard last not to rest
     bool heard = false;                 ///< by this process, not only recalled
     bool lost = false;                  ///< silent, piloted, or far from its reference
     bool piloted = false;               ///< others fly it, by its telemetry

@@ -118,8 +118,8 @@ struct SeenBody {
   Vec3 position_m = Vec3::Zero();
   bool airborne = false;
   double off_m = 0.0;   ///< from its reference, while it has one
-  bool ended = false;   ///< it has no program, at this moment or for good
-  bool adrift = false;  ///< that, and it comes down as it may
+  bool unled = false;   ///< it has no program, or its pilot has it
+  bool adrift = false;  ///< it has none, and comes down as it may
 };
 
 /// What a vehicle itself has to say at a moment, whether it is heard or not.
