@@ -35,9 +35,12 @@ constexpr double kCreep_s = 0.1;
 constexpr int kRoomDirections = 16;
 constexpr int kRoomSteps = 4;
 constexpr int kRoomStepsMax = 5 * kRoomSteps;
-/// Of what it starts from, whoever is led out keeps so much from where others may be: the best of
-/// the directions passes points of a way nearer than it starts, and to stay is worse.
+/// Of what it starts from, who is led out of a keep-out keeps so much: of the points of a way, the
+/// best of the directions passes some nearer than it starts, and to stay is worse.
 constexpr double kNearerOnTheWayOut = 0.9;
+/// Nearer than this share of what is to be between two it is right below another that may come
+/// down, and the shortest way out is the best, whichever vertical it crosses.
+constexpr double kBelow = 0.5;
 
 using Pair = std::pair<std::size_t, std::size_t>;
 
@@ -107,8 +110,10 @@ class Planner {
     const double from_m = distance_m(request_.transfers[vehicle].from, keep_out, height_factor_);
     return std::min(request_.separation.horizontal_m, from_m - kRounding_m);
   }
-  [[nodiscard]] bool starts_in_keep_out_of(VehicleId other, std::size_t vehicle) const;
-  [[nodiscard]] bool clear_of_keep_outs(const Change& change, std::size_t vehicle) const;
+  [[nodiscard]] std::set<VehicleId> right_above(std::size_t vehicle) const;
+  [[nodiscard]] bool is_right_below(std::size_t vehicle, const KeepOut& column) const;
+  [[nodiscard]] bool clear_of_keep_outs(const Change& change, std::size_t vehicle,
+                                        const std::set<VehicleId>& above) const;
   [[nodiscard]] bool rests_too_near(std::size_t vehicle) const;
   [[nodiscard]] bool is_outside(const Vec3& place) const;
   [[nodiscard]] bool leads_clear(const Transfer& way, std::size_t vehicle) const;
@@ -363,32 +368,38 @@ bool Planner::rests_too_near(std::size_t vehicle) const {
   return false;
 }
 
-bool Planner::starts_in_keep_out_of(VehicleId other, std::size_t vehicle) const {
-  return std::ranges::any_of(request_.keep_outs, [&](const KeepOut& keep_out) {
-    return keep_out.vehicle == other &&
-           distance_m(request_.transfers[vehicle].from, keep_out, height_factor_) <
-               request_.separation.horizontal_m;
-  });
+/// Whoever may come down on it.
+std::set<VehicleId> Planner::right_above(std::size_t vehicle) const {
+  std::set<VehicleId> above;
+  for (const KeepOut& keep_out : request_.keep_outs) {
+    if (is_right_below(vehicle, keep_out)) above.insert(keep_out.vehicle);
+  }
+  return above;
 }
 
-/// Of who is led out of keep-outs. From below another the shortest way is the best, whichever
-/// vertical it crosses.
-bool Planner::clear_of_keep_outs(const Change& change, std::size_t vehicle) const {
+bool Planner::is_right_below(std::size_t vehicle, const KeepOut& column) const {
+  return column.from != column.to &&
+         distance_m(request_.transfers[vehicle].from, column, height_factor_) <
+             kBelow * request_.separation.horizontal_m;
+}
+
+/// Of who is led out; of a keep-out that it is not in, all that is to be kept.
+bool Planner::clear_of_keep_outs(const Change& change, std::size_t vehicle,
+                                 const std::set<VehicleId>& above) const {
   const ChangeMotion motion{change};
+  const double all_m = request_.separation.horizontal_m - kRounding_m;
   return std::ranges::all_of(request_.keep_outs, [&](const KeepOut& keep_out) {
-    const bool is_column = keep_out.from != keep_out.to;
-    if (is_column && starts_in_keep_out_of(keep_out.vehicle, vehicle)) return true;
+    if (is_right_below(vehicle, keep_out)) return true;
     const double from_m = distance_m(request_.transfers[vehicle].from, keep_out, height_factor_);
-    const double wanted = std::min(request_.separation.horizontal_m, kNearerOnTheWayOut * from_m);
+    const bool may_be_nearer = from_m < all_m || above.contains(keep_out.vehicle);
+    const double wanted = may_be_nearer ? std::min(all_m, kNearerOnTheWayOut * from_m) : all_m;
     return keep_out_distance(motion, vehicle, keep_out, wanted) >= wanted;
   });
 }
 
 bool Planner::is_outside(const Vec3& place) const {
-  return std::ranges::all_of(request_.keep_outs, [&](const KeepOut& keep_out) {
-    return distance_m(place, keep_out, height_factor_) >=
-           request_.separation.horizontal_m - kRounding_m;
-  });
+  return !is_near_any(place, request_.keep_outs, request_.separation.horizontal_m - kRounding_m,
+                      height_factor_);
 }
 
 /// Of who moves alone: never nearer to anybody than at its start, and at its end far enough from
@@ -431,6 +442,7 @@ std::optional<PlannedChange> Planner::lead_out(
   const double step_m = apart_m_ / kRoomSteps;
   for (int steps = 1; steps <= kRoomStepsMax; ++steps) {
     for (const std::size_t vehicle : vehicles) {
+      const std::set<VehicleId> above = right_above(vehicle);
       for (int direction = 0; direction <= kRoomDirections; ++direction) {
         Transfer way = request_.transfers[vehicle];
         way.to = way.from;
@@ -443,7 +455,7 @@ std::optional<PlannedChange> Planner::lead_out(
         if (!leads_clear(way, vehicle) || !allowed(way)) continue;
         Change change = stays;
         change.movers[vehicle].points.back() = way.to;
-        if (!clear_of_keep_outs(change, vehicle)) continue;
+        if (!clear_of_keep_outs(change, vehicle, above)) continue;
         const double least_m = nearness(change, true).least_m;
         return planned(std::move(change), Way::straight, least_m);
       }
@@ -517,6 +529,13 @@ double distance_m(const Vec3& position, const KeepOut& keep_out, double height_f
   const double squared = way.squaredNorm();
   const double share = squared > 0.0 ? std::clamp((at - from).dot(way) / squared, 0.0, 1.0) : 0.0;
   return (from + share * way - at).norm();
+}
+
+bool is_near_any(const Vec3& position, const std::vector<KeepOut>& keep_outs, double within_m,
+                 double height_factor) {
+  return std::ranges::any_of(keep_outs, [&](const KeepOut& keep_out) {
+    return distance_m(position, keep_out, height_factor) < within_m;
+  });
 }
 
 Result<PlannedChange> plan_change(const ChangeRequest& request) { return Planner{request}.plan(); }

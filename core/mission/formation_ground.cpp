@@ -32,7 +32,8 @@ constexpr Duration kStuck = std::chrono::seconds{2};
 constexpr Duration kMessageLife = std::chrono::seconds{3};
 /// After the start of a change whoever moves in it does.
 constexpr Duration kSetOff = std::chrono::seconds{1};
-/// Who waits on its way for less may be off again before it hears of another.
+/// Who waits on its way for less may be off again before it hears of another change. As often it is
+/// looked for who rests below one that is lost.
 constexpr Duration kRests = std::chrono::seconds{1};
 constexpr Duration kTryAgain = std::chrono::seconds{5};
 /// Who is beside its place for so long will not come to it; gusts pass.
@@ -136,9 +137,7 @@ Result<std::vector<Vec3>> FormationGround::free_places(const formation::ShapeSpe
   const auto all = keep_outs();
   const formation::Separation apart = separation();
   const auto taken = [&](const Vec3& place) {
-    return std::any_of(all.begin(), all.end(), [&](const formation::KeepOut& keep_out) {
-      return distance_m(place, keep_out, height_factor(apart)) < apart.horizontal_m;
-    });
+    return is_near_any(place, all, apart.horizontal_m, height_factor(apart));
   };
   auto places = formation::places(shape, count);
   for (std::size_t wanted = count; places && wanted <= count + kSparePlaces;) {
@@ -195,9 +194,13 @@ Result<void> FormationGround::within_fence(const Change& change) const {
   return {};
 }
 
+double FormationGround::sideways_above_m() const {
+  return std::min(kSidewaysAbove_m, config_.rally.centre.z());
+}
+
 /// Nobody is flown to the side near the ground: what stands there, and who, is not known.
 Result<void> FormationGround::above_ground(const std::vector<Transfer>& transfers) const {
-  const double least_m = std::min(kSidewaysAbove_m, config_.rally.centre.z());
+  const double least_m = sideways_above_m();
   for (const Transfer& transfer : transfers) {
     const bool sideways = (transfer.to - transfer.from).head<2>().norm() > kBeside_m;
     if (!sideways) continue;
@@ -258,7 +261,8 @@ std::optional<formation::PlannedChange> FormationGround::room_made(
     const formation::ChangeRequest& request) const {
   return formation::make_room(request, [&](const Transfer& way) {
     // Those that stand on the ground are put further apart.
-    if (way.from.z() < std::min(kSidewaysAbove_m, config_.rally.centre.z())) return false;
+    if (way.from.z() < sideways_above_m()) return false;
+    if (leaves_in_vain(members_.at(way.vehicle))) return false;
     const Change alone{.movers = {{way.vehicle, {way.from, way.to}, 0}}};
     return may_be_flown({way}).ok() && within_fence(alone).ok();
   });
@@ -316,9 +320,11 @@ std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& membe
     way.push_back(change.movers[*mover].points.back());
     auto from = way.begin();
     if (change.number == member.status.progress.change) {
-      from = std::min_element(way.begin(), way.end(), [&](const Vec3& a, const Vec3& b) {
-        return (a - seen).squaredNorm() < (b - seen).squaredNorm();
-      });
+      // Of a way that leads up and down one vertical, the way up.
+      const auto off_m = [&seen](const Vec3& place) { return (place - seen).norm(); };
+      const double least_m = off_m(*std::ranges::min_element(way, {}, off_m));
+      from = std::ranges::find_if(
+          way, [&](const Vec3& place) { return off_m(place) <= least_m + kLook_m / 2.0; });
     }
     places.insert(places.end(), from, way.end());
   }
@@ -364,10 +370,15 @@ Result<FormationPreview> FormationGround::command(const FormationOrder& order, I
   if (now < Instant{}) return Error{"the mission has not begun; vehicles wait for its start"};
   auto preview = this->preview(order);
   if (!preview) return preview;
-  correcting_ = false;
-  for (auto& [vehicle, member] : members_) member.trim_m = Vec3::Zero();
+  forget_drift();
   begin(*preview, now);
   return preview;
+}
+
+/// Places are given anew.
+void FormationGround::forget_drift() {
+  correcting_ = false;
+  for (auto& [vehicle, member] : members_) member.trim_m = Vec3::Zero();
 }
 
 void FormationGround::begin(FormationPreview preview, Instant now) {
@@ -384,6 +395,9 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   forget_flown();
   sent_.push_back(*change_);
   makes_room_ = preview.makes_room.has_value();
+  if (makes_room_) {
+    members_.at(*preview.makes_room).led_out = {number_, *goal_of(*preview.makes_room)};
+  }
   give_again_ = makes_room_;
   is_sent_ = true;
   withdrawn_ = false;
@@ -568,18 +582,46 @@ void FormationGround::find_stuck(Instant now) {
   withdrawn_ = now - *stuck_since_ >= kStuck + kMessageLife;
 }
 
+/// It has taken up to leave, and does not: held, or stopped before somebody.
+bool FormationGround::leaves_in_vain(const Member& member) {
+  const auto& out = member.led_out;
+  return out && out->change == member.status.progress.change && member.status.at_rest &&
+         (member.status.reference_m - out->to).norm() > kLedTo_m;
+}
+
 /// It has for a while, and takes up nothing that was sent.
 bool FormationGround::rests(VehicleId vehicle, const Member& member) const {
-  if (member.lost || now_ - member.moved_at < kRests) return false;
+  const FormationStatus& status = member.status;
+  if (member.lost || !status.at_rest || now_ - member.moved_at < kRests) return false;
   return std::ranges::none_of(sent_, [&](const Change& change) {
-    return change.number > member.status.progress.change && mover_of(change, vehicle);
+    return change.number > status.progress.change && mover_of(change, vehicle);
   });
 }
 
-/// Who is silent above others may come down before all rest: who rests below is led out at once,
-/// alone, clear of whatever the others may fly. A pilot sees on whom he comes down.
+/// Whoever is to has taken up what was sent last, or had the time to, and it is known what each of
+/// them flies.
+bool FormationGround::may_lead_out(Instant now) const {
+  if (barred_.why() || !unknown().empty()) return false;
+  bool all_taken_up = true;
+  for (const auto& [vehicle, member] : members_) {
+    const std::uint32_t flies = member.status.progress.change;
+    if (member.lost) continue;
+    all_taken_up = all_taken_up && (flies >= number_ || !goal_of(vehicle));
+    const bool is_known = flies == 0 || std::ranges::any_of(sent_, [flies](const Change& sent) {
+                            return sent.number == flies;
+                          });
+    if (!is_known) return false;
+  }
+  return now >= change_->start + (all_taken_up ? kSetOff : kMessageLife);
+}
+
+/// Who is silent above others may come down before all rest: who rests in its column is led out at
+/// once, alone, clear of whatever the others may fly. A pilot sees on whom he comes down.
 void FormationGround::clear_columns(Instant now) {
-  if (now < change_->start + kSetOff || barred_.why() || !unknown().empty()) return;
+  const bool any_lost =
+      std::ranges::any_of(members_, [](const auto& entry) { return entry.second.lost; });
+  if (!any_lost || now < look_below_at_ || !may_lead_out(now)) return;
+  look_below_at_ = now + kRests;
   auto columns = keep_outs();
   std::erase_if(columns, [this](const formation::KeepOut& column) {
     return members_.at(column.vehicle).piloted;
@@ -587,10 +629,8 @@ void FormationGround::clear_columns(Instant now) {
   const formation::Separation apart = separation();
   for (const auto& [vehicle, member] : members_) {
     const Vec3& here = member.status.reference_m;
-    const bool below = std::ranges::any_of(columns, [&](const formation::KeepOut& column) {
-      return distance_m(here, column, height_factor(apart)) < apart.horizontal_m;
-    });
-    if (!below || !rests(vehicle, member)) continue;
+    const bool below = is_near_any(here, columns, apart.horizontal_m, height_factor(apart));
+    if (!below || here.z() < sideways_above_m() || !rests(vehicle, member)) continue;
     auto request = request_for({{vehicle, here, here}});
     for (const auto& [other, others] : members_) {
       if (other == vehicle || others.lost) continue;
@@ -600,6 +640,7 @@ void FormationGround::clear_columns(Instant now) {
     }
     auto room = room_made(request);
     if (!room) continue;
+    forget_drift();
     begin({*order_, std::move(*room), {}, vehicle}, now);
     return;
   }
@@ -620,6 +661,7 @@ void FormationGround::give_again(Instant now) {
     return;
   }
   told_refused_ = false;
+  forget_drift();
   begin(std::move(*again), now);
 }
 

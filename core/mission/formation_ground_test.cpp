@@ -32,6 +32,11 @@ class Team {
   }
   void lose(std::size_t index) { vehicles_.at(index).lost = true; }
   void come_back(std::size_t index) { vehicles_.at(index).lost = false; }
+  void hold(std::size_t index) {
+    Command command{.vehicle = vehicles_.at(index).id, .kind = CommandKind::hold};
+    set_number(command, 1);
+    vehicles_.at(index).agent.on_message(command, kGroundStation, now);
+  }
   /// The ground station is not.
   void is_heard_by_nobody(bool so) { mute_ = so; }
   void start_anew(std::size_t index, const Vec3& place) {
@@ -379,24 +384,44 @@ TEST(FormationGround, WhoHasNotHeardOfTheRoomToBeMadeIsToldAgain) {
   EXPECT_EQ(team.count(EventKind::change_begun), 2U) << "by the same change";
 }
 
+/// The second is led over the first, the third far along; the second is lost above the first, which
+/// was silent when the order was given.
+struct LostAboveOne : Team {
+  LostAboveOne() : Team{{{0.0, 0.0, 0.0}, {0.0, 6.0, 0.0}, {0.0, 120.0, 0.0}}} {
+    EXPECT_TRUE(goes_up());
+    lose(0);
+    EXPECT_TRUE(until([this] { return ground().members().at({1}).lost; }));
+    FormationOrder order = line_around({0.0, 0.0, 10.0});
+    order.shape.spacing_m = 12.0;
+    EXPECT_TRUE(command(order).ok());
+    EXPECT_TRUE(until([this] { return beside_m() < 0.5; }));
+    lose(1);
+    come_back(0);
+  }
+  [[nodiscard]] double beside_m() const { return (position(1) - position(0)).head<2>().norm(); }
+};
+
 TEST(FormationGround, WhoRestsBelowOneThatIsLostLeavesWhileOthersStillFly) {
-  Team team{{{0.0, 0.0, 0.0}, {0.0, 6.0, 0.0}, {0.0, 120.0, 0.0}}};
-  ASSERT_TRUE(team.goes_up());
-  team.lose(0);
-  ASSERT_TRUE(team.until([&] { return team.ground().members().at({1}).lost; }));
-  // The second is led over the first, the third far along.
-  FormationOrder order = line_around({0.0, 0.0, 10.0});
-  order.shape.spacing_m = 12.0;
-  ASSERT_TRUE(team.command(order).ok());
-  const auto beside_m = [&] { return (team.position(1) - team.position(0)).head<2>().norm(); };
-  ASSERT_TRUE(team.until([&] { return beside_m() < 0.5; }));
-  team.lose(1);
-  team.come_back(0);
-  ASSERT_TRUE(team.until([&] { return beside_m() > 2.99; }));
+  LostAboveOne team;
+  ASSERT_TRUE(team.until([&] { return team.beside_m() > 2.99; }));
   EXPECT_FALSE(team.ground().members().at({3}).status.at_rest);
   EXPECT_GT((team.position(2) - Vec3{0.0, 6.0, 10.0}).norm(), 3.0);
+  EXPECT_EQ(team.count(EventKind::change_begun), 3U);
   ASSERT_TRUE(team.until([&] { return team.ground().in_place(); })) << "the order is given again";
   EXPECT_FALSE(team.ground().members().at({1}).lost);
+  EXPECT_EQ(team.count(EventKind::change_begun), 4U);
+}
+
+TEST(FormationGround, WhoCannotLeaveIsToldSoOnceAndNotForEver) {
+  LostAboveOne team;
+  team.hold(0);
+  ASSERT_TRUE(team.until([&] { return team.count(EventKind::order_waits) > 0; }));
+  EXPECT_EQ(team.count(EventKind::change_begun), 3U);
+  EXPECT_LT(team.beside_m(), 0.5);
+  for (int i = 0; i < 200; ++i) team.step();
+  EXPECT_EQ(team.count(EventKind::change_begun), 3U);
+  EXPECT_FALSE(team.ground().moving());
+  EXPECT_TRUE(team.command({.kind = OrderKind::land}).ok());
 }
 
 TEST(FormationGround, WhoStandTooNearAreNotLedApart) {

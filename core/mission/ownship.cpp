@@ -215,9 +215,8 @@ bool Ownship::on_track(const TimedPath& timed) const {
   return std::abs(error.along_m) < kOnTrackM && std::abs(error.cross_m) < kOnTrackM;
 }
 
-double Ownship::late_m() const {
-  if (spec().is_copter()) return 0.0;
-  return -planning::follow_error(flight_.plan().timed, state_, state_.time).along_m;
+double Ownship::along_m() const {
+  return planning::follow_error(flight_.plan().timed, state_, state_.time).along_m;
 }
 
 bool Ownship::can(const TaskId& task) const {

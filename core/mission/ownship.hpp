@@ -107,8 +107,8 @@ class Ownship {
   [[nodiscard]] bool leaves_fence(Instant now) const;
   /// Is it where that path has it? Then a task on it counts as flown.
   [[nodiscard]] bool on_track(const TimedPath& timed) const;
-  /// Behind where its flight has it by now; negative where it is ahead.
-  [[nodiscard]] double late_m() const;
+  /// How far it is ahead of where its flight has it by now; negative where it is behind.
+  [[nodiscard]] double along_m() const;
   /// Is it as far from there as an arc of that radius is flown, give or take a tenth? Nearer or
   /// farther it does not count as flown.
   [[nodiscard]] bool on_arc(const Vec2& centre, double radius_m) const;

@@ -19,7 +19,8 @@ constexpr Duration kCommitLead = std::chrono::seconds{1};
 constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
 constexpr double kRunOut = 2.0;  ///< times the lead of turns, over the site and straight on
 constexpr double kLateFrom_s = 0.1;
-constexpr double kBeyond_s = 0.5;  ///< who is later than that flies straight on so much longer
+constexpr double kLateMost_s = 1.0;
+constexpr double kBeyond_s = 0.5;  ///< beyond where it is by then
 constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two looks at a task's time
 /// That it has not bid is told for so long.
@@ -353,19 +354,23 @@ void TaskFlyer::commit_delivery(Instant now) {
   }
 }
 
-/// Straight on over the site, where no hazard is: the turn away, begun early, would be over it, or
-/// before it for who is late.
+/// Straight on over the site: a turn away that begins on time is flown before it by who is late,
+/// and over it by who begins turns early. Where there is no room for it, less, or none.
 void TaskFlyer::run_out(Path& path, double speed_mps) const {
-  double length_m = kRunOut * ownship_.config().turn_lead_s * speed_mps;
-  if (const double late_m = ownship_.late_m(); late_m > kLateFrom_s * speed_mps) {
-    length_m += late_m + kBeyond_s * speed_mps;
+  const double early_s = kRunOut * ownship_.config().turn_lead_s;
+  const double late_s = std::min(-ownship_.along_m() / speed_mps, kLateMost_s);
+  const double longest_s = late_s > kLateFrom_s ? early_s + late_s + kBeyond_s : early_s;
+  for (const double run_s : {longest_s, early_s}) {
+    if (run_s <= 0.0) return;
+    const Segment straight{0.0, run_s * speed_mps};
+    Path beyond{path.end(), {}};
+    (void)beyond.append(straight);
+    const double orbit = ownship_.flight().hold_curvature(beyond.end(), ownship_.hazards());
+    if (!planning::is_clear(beyond, ownship_.hazards())) continue;
+    if (!ownship_.stays_in_fence(beyond, orbit)) continue;
+    (void)path.append(straight);  // without room for it the turn follows at once
+    return;
   }
-  if (length_m <= 0.0) return;
-  const Segment straight{0.0, length_m};
-  Path beyond{path.end(), {}};
-  (void)beyond.append(straight);
-  if (!planning::is_clear(beyond, ownship_.hazards())) return;
-  (void)path.append(straight);  // without room for it the turn follows at once
 }
 
 void TaskFlyer::begin(Instant now) {

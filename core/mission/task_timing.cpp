@@ -26,16 +26,12 @@ double error_s(const VehicleSpec& vehicle, const TimedPath& timed, double along_
   return std::abs(forecast.along_m) / timed.speed_mps;
 }
 
-double along_m(const Ownship& ownship) {
-  const VehicleState& state = ownship.state();
-  return planning::follow_error(ownship.flight().plan().timed, state, state.time).along_m;
-}
 }  // namespace
 
 bool is_untimely(const Ownship& ownship, const TaskFlight& task, Instant now) {
   const VehicleState& state = ownship.state();
   if (now - state.time > kStateAgeMax || now < task.plan.timed.start_time) return false;
-  const double expected_s = error_s(ownship.spec(), task.plan.timed, along_m(ownship),
+  const double expected_s = error_s(ownship.spec(), task.plan.timed, ownship.along_m(),
                                     planning::wind_of(state), now, task.assignment.time);
   return expected_s > kUntimely_s;
 }
@@ -43,7 +39,7 @@ bool is_untimely(const Ownship& ownship, const TaskFlight& task, Instant now) {
 std::optional<double> timely_speed(const Ownship& ownship, const TaskFlight& task, Instant start) {
   const VehicleSpec& vehicle = ownship.spec();
   const Vec2 wind = planning::wind_of(ownship.state());
-  const double ahead_m = along_m(ownship);
+  const double ahead_m = ownship.along_m();
   const Instant time = task.assignment.time;
   VehicleSpec careful = vehicle;
   careful.speed_min_mps *= 1.0 + kReserve;

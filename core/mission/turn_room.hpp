@@ -9,9 +9,9 @@ namespace skein::mission {
 
 /// The wind there is, and how wide a fixed wing's turns are planned in it. A plan has one airspeed
 /// v, so before the wind w it is v + w fast over the ground, and circles that can be held there
-/// have at least r_min ((v + w) / v)^2 and a reserve. Never tighter than the configuration has it,
-/// nor wider than the arcs that the vehicle's sensors leave around a site, or kWidest times its
-/// turn radius.
+/// have at least r_min ((v + w) / v)^2 and a reserve; one deviation of the gusts counts as wind.
+/// Never tighter than the configuration has it, nor wider than the arcs that the vehicle's sensors
+/// leave around a site, or kWidest times its turn radius.
 class TurnRoom {
  public:
   static constexpr double kWidest = 3.0;
@@ -21,8 +21,8 @@ class TurnRoom {
   TurnRoom(const VehicleSpec& vehicle, bool heeds_wind);
 
   /// True where what is flown is to be planned anew: circles are now wider, or tighter again, by a
-  /// twentieth at least, or the wind is another one by kWindChange_mps; so that gusts, of which the
-  /// mean of 20 s leaves little, change nothing.
+  /// twentieth at least, or the wind is another one by kWindChange_mps; so that a single gust, of
+  /// which the mean of 20 s leaves little, changes nothing.
   bool on_state(const VehicleState& state);
 
   [[nodiscard]] double radius_m() const { return radius_m_; }
@@ -40,7 +40,7 @@ class TurnRoom {
   double radius_m_ = 0.0;
   bool lacks_room_ = false;
   Vec2 wind_mps_{0.0, 0.0};
-  double gusts_m2ps2_ = 0.0;  ///< mean square of what the wind is beside its mean
+  double gusts_m2ps2_ = 0.0;         ///< mean square of what the wind is beside its mean
   Vec2 planned_wind_mps_{0.0, 0.0};  ///< when on_state() was last true
   double heard_s_ = 0.0;             ///< that the mean is of
   std::optional<Instant> last_;

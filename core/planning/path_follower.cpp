@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kNearestMax_m = 200.0;  ///< how far along from its time the vehicle is sought
 constexpr int kNearestSteps = 4;
-constexpr double kBefore_m = 1e-3;   ///< there the plan's speed steps to what follows
+constexpr double kBefore_m = 1e-3;   ///< where it is on time, speed and curvature may step
 constexpr double kSettled_m = 1e-9;  ///< a step as small as that ends the search
-/// Where it is to be on time it is to be there on its course, too: so long before, and so long
-/// after, it leans towards its line by no more than that (3 degrees).
+/// Where it is to be on time and leads straight on, it is to be on its course, too: so long before,
+/// and so long after, it leans towards its line by no more than that (3 degrees).
 constexpr double kLinedUpFor_s = 1.5;
 constexpr double kLinedUpAfter_s = 0.5;
 constexpr double kLeanMost = 0.05;
@@ -125,10 +125,13 @@ double airspeed_rise(const TimedPath& plan, const PieceStarts& starts, double on
 }
 
 /// How steeply it may lean towards its line there, of the path.
-double lean_most(const TimedPath& plan, double distance_m, double speed_mps) {
+double lean_most(const TimedPath& plan, const PieceStarts& starts, double distance_m,
+                 double speed_mps) {
   const double to_go_s = (plan.on_time_m - distance_m) / std::max(1.0, speed_mps);
-  const bool lines_up =
-      plan.on_time_m > 0.0 && to_go_s < kLinedUpFor_s && to_go_s > -kLinedUpAfter_s;
+  const double beyond_m = plan.on_time_m + kBefore_m;
+  const bool lines_up = plan.on_time_m > 0.0 && to_go_s < kLinedUpFor_s &&
+                        to_go_s > -kLinedUpAfter_s &&
+                        (beyond_m >= starts.length_m() || plan.path.curvature_at(beyond_m) == 0.0);
   return lines_up ? kLeanMost : std::numeric_limits<double>::infinity();
 }
 
@@ -160,7 +163,7 @@ Setpoint follow_path(const PathFollowerParams& params, const VehicleSpec& vehicl
 
   // Course: towards the path, the steeper the farther.
   const double leans = params.cross_track_gain_per_m * at.left_m;
-  const double most = lean_most(plan, at.on_time_m + at.ahead_m, state.groundspeed_mps);
+  const double most = lean_most(plan, starts, at.on_time_m + at.ahead_m, state.groundspeed_mps);
   const double lean = std::clamp(leans, -most, most);
   const double course = at.heading_rad - std::atan(lean);
   const double closing_mps = over_ground.dot(left_of(at.forward));

@@ -14,6 +14,15 @@ std::string name(const SeenBody& body) { return fmt::format("U{}", body.vehicle.
 }  // namespace
 
 void AirspaceJudge::step(const std::vector<SeenBody>& bodies, Instant now) {
+  since_.resize(bodies.size());
+  const auto note = [now](std::optional<Instant>& since, bool is_so) {
+    if (!is_so) since.reset();
+    if (is_so && !since) since = now;
+  };
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    note(since_[i].unled, bodies[i].unled);
+    note(since_[i].adrift, bodies[i].adrift);
+  }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     const SeenBody& body = bodies[i];
     farthest_m_ = std::max(farthest_m_, body.off_m);
@@ -39,11 +48,9 @@ void AirspaceJudge::see_pair(std::size_t a, std::size_t b, const std::vector<See
   const double share = squared > 0.0 ? std::clamp(-begin.dot(way) / squared, 0.0, 1.0) : 0.0;
   const double apart = (begin + share * way).norm();
   const bool near = apart < limits_.separation.horizontal_m;
-  // One comes down beside another, and neither has a program that could do anything about it; or
-  // one that has come too late.
-  const bool one_comes_down = bodies[a].adrift || bodies[b].adrift;
+  // Nobody could do anything about it; nor a program that comes when they are near already.
   if (!near) met_unled_.erase({a, b});
-  if (near && one_comes_down && bodies[a].unled && bodies[b].unled) met_unled_.insert({a, b});
+  if (near && (comes_down_on(a, b) || comes_down_on(b, a))) met_unled_.insert({a, b});
   if (met_unled_.contains({a, b})) return;
   least_m_ = std::min(least_m_, apart);
   if (!near || !told_.insert({a, b}).second) return;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -32,13 +33,22 @@ class AirspaceJudge {
   [[nodiscard]] double farthest_m() const { return farthest_m_; }
 
  private:
+  struct Since {
+    std::optional<Instant> unled;
+    std::optional<Instant> adrift;
+  };
+  /// One comes down on another, which no program had led for as long.
+  [[nodiscard]] bool comes_down_on(std::size_t one, std::size_t other) const {
+    return since_[one].adrift && since_[other].unled && *since_[other].unled <= *since_[one].adrift;
+  }
   void see_pair(std::size_t a, std::size_t b, const std::vector<SeenBody>& bodies, Instant now);
 
   Limits limits_;
   std::vector<SeenBody> before_;
   using Pair = std::pair<std::size_t, std::size_t>;
   std::set<Pair> told_;
-  std::set<Pair> met_unled_;  ///< too near since one came down, and no program led either
+  std::vector<Since> since_;  ///< of each body
+  std::set<Pair> met_unled_;  ///< too near since one came down on the other
   std::vector<FormationViolation> violations_;
   double least_m_ = std::numeric_limits<double>::infinity();
   double farthest_m_ = 0.0;

@@ -71,6 +71,18 @@ TEST(AirspaceJudge, LeavesAloneTwoThatNobodyFlies) {
   }
 }
 
+TEST(AirspaceJudge, WhoseProgramEndsBelowOneThatComesDownMightHaveLeft) {
+  AirspaceJudge judge{kLimits};
+  std::vector<SeenBody> bodies{body(1, {0, 0, 30}), body(2, {1.5, 0, 20})};
+  bodies[0].unled = bodies[0].adrift = true;
+  judge.step(bodies, Instant{});
+  bodies[1].unled = true;
+  judge.step(bodies, Instant{} + 20ms);
+  bodies[0].position_m.z() = 20.0;
+  judge.step(bodies, Instant{} + 40ms);
+  EXPECT_THAT(judge.take(), SizeIs(1));
+}
+
 TEST(AirspaceJudge, WhoIsGivenBackBelowOneThatComesDownHasUntilItHasPassed) {
   AirspaceJudge judge{kLimits};
   std::vector<SeenBody> bodies{body(1, {0, 0, 20}), body(2, {1.5, 0, 20})};

@@ -31,6 +31,10 @@ struct KeepOut {
 [[nodiscard]] double distance_m(const Vec3& position, const KeepOut& keep_out,
                                 double height_factor);
 
+/// Of any of them, nearer than that.
+[[nodiscard]] bool is_near_any(const Vec3& position, const std::vector<KeepOut>& keep_outs,
+                               double within_m, double height_factor);
+
 struct ChangeRequest {
   std::vector<Transfer> transfers;
   std::vector<KeepOut> keep_outs;
@@ -71,8 +75,10 @@ struct PlannedChange {
 [[nodiscard]] Result<PlannedChange> plan_change(const ChangeRequest& request);
 
 /// A change after which fewer vehicles rest nearer to each other than plan_change() can begin from,
-/// as who waited for each other may, or in a keep-out: one of them is led out, straight, away from
-/// all, to where nobody is nearer than separation and reserve and no keep-out is; the others stay.
+/// as who waited for each other may, or in a keep-out: one of them is led out, straight, to where
+/// nobody is nearer than separation and reserve and no keep-out is; the others stay. On its way it
+/// comes nearer to nobody, and to keep-outs that it is in by a tenth at most; from right below one
+/// that may come down it takes the shortest way.
 /// The shortest such way of the least that `allowed` lets be flown. None where nobody rests so
 /// near, or no way out is free.
 [[nodiscard]] std::optional<PlannedChange> make_room(

@@ -98,6 +98,11 @@ class FormationGround {
     double place_error_m = 0.0;         ///< from its place; of no meaning on the way
     Vec3 drift_m = Vec3::Zero();        ///< place less position, over the last seconds
     Vec3 trim_m = Vec3::Zero();         ///< what was added to its places against drift
+    struct LedOut {
+      std::uint32_t change = 0;
+      Vec3 to{0.0, 0.0, 0.0};
+    };
+    std::optional<LedOut> led_out;  ///< of others' way, the last time
   };
   [[nodiscard]] const std::map<VehicleId, Member>& members() const { return members_; }
   /// All have held their places since the newest change.
@@ -114,6 +119,7 @@ class FormationGround {
   [[nodiscard]] Result<void> within_heights(
       const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] Result<void> within_fence(const formation::Change& change) const;
+  [[nodiscard]] double sideways_above_m() const;
   [[nodiscard]] Result<void> above_ground(const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] Result<FormationPreview> plan(const FormationOrder& order,
                                               std::vector<formation::Transfer> transfers) const;
@@ -135,7 +141,10 @@ class FormationGround {
   [[nodiscard]] bool is_led(VehicleId vehicle) const;
   void find_stuck(Instant now);
   [[nodiscard]] bool rests(VehicleId vehicle, const Member& member) const;
+  [[nodiscard]] static bool leaves_in_vain(const Member& member);
+  [[nodiscard]] bool may_lead_out(Instant now) const;
   void clear_columns(Instant now);
+  void forget_drift();
   void give_again(Instant now);
   void judge_places(Instant now);
   [[nodiscard]] bool stay_off(const std::vector<VehicleId>& who, Instant now);
@@ -165,6 +174,7 @@ class FormationGround {
   std::optional<Instant> off_since_;   ///< somebody is beside where it was led to its end
   std::optional<Instant> held_since_;
   std::optional<Instant> rest_since_;
+  Instant look_below_at_{};  ///< for who is to be led out, not before
   Instant next_;
   Instant now_{};  ///< when it was called last
   BarredVehicles barred_;
