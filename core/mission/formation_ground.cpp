@@ -32,9 +32,12 @@ constexpr Duration kStuck = std::chrono::seconds{2};
 constexpr Duration kMessageLife = std::chrono::seconds{3};
 /// After the start of a change whoever moves in it does.
 constexpr Duration kSetOff = std::chrono::seconds{1};
-/// Who waits on its way for less may be off again before it hears of another change. As often it is
-/// looked for who rests below one that is lost.
+/// Who waits on its way for less may be off again before it hears of another change.
 constexpr Duration kRests = std::chrono::seconds{1};
+/// So often it is looked for who rests below one that is lost.
+constexpr Duration kLookBelow = std::chrono::milliseconds{200};
+/// Who leaves alone meets nobody at a time agreed on: it goes as soon as it is told.
+constexpr Duration kRoomLead = std::chrono::milliseconds{200};
 constexpr Duration kTryAgain = std::chrono::seconds{5};
 /// Who is beside its place for so long will not come to it; gusts pass.
 constexpr Duration kStaysOff = std::chrono::seconds{5};
@@ -390,7 +393,7 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
     number_ = std::max(number_, member.status.progress.change + 1);
   }
   change_->number = number_;
-  change_->start = now + config_.lead;
+  change_->start = now + (preview.makes_room ? kRoomLead : config_.lead);
   for (auto& [vehicle, member] : members_) member.arrived_at.reset();
   forget_flown();
   sent_.push_back(*change_);
@@ -405,6 +408,7 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   near_since_.reset();
   off_since_.reset();
   told_off_ = false;
+  told_refused_ = false;
   held_since_.reset();
   rest_since_.reset();
   messages_.push(*change_);
@@ -621,7 +625,7 @@ void FormationGround::clear_columns(Instant now) {
   const bool any_lost =
       std::ranges::any_of(members_, [](const auto& entry) { return entry.second.lost; });
   if (!any_lost || now < look_below_at_ || !may_lead_out(now)) return;
-  look_below_at_ = now + kRests;
+  look_below_at_ = now + kLookBelow;
   auto columns = keep_outs();
   std::erase_if(columns, [this](const formation::KeepOut& column) {
     return members_.at(column.vehicle).piloted;
@@ -660,7 +664,6 @@ void FormationGround::give_again(Instant now) {
     report(event::OrderWaits{0, std::string{to_string(order_->kind)}, again.error().message}, now);
     return;
   }
-  told_refused_ = false;
   forget_drift();
   begin(std::move(*again), now);
 }
