@@ -412,6 +412,7 @@ void FormationGround::begin(FormationPreview preview, Instant now) {
   held_since_.reset();
   rest_since_.reset();
   messages_.push(*change_);
+  begun_at_ = sent_at_ = now;
   send_next_ = now + repeat_after(*change_);
   event::ChangeBegun begun;
   begun.number = number_;
@@ -532,6 +533,7 @@ void FormationGround::on_timeout(Instant now) {
   find_stuck(now);
   if (!all_know && is_sent_ && now >= send_next_) {
     send_next_ = now + repeat_after(*change_);
+    sent_at_ = now;
     messages_.push(*change_);
   }
   judge_places(now);
@@ -593,12 +595,17 @@ bool FormationGround::leaves_in_vain(const Member& member) {
          (member.status.reference_m - out->to).norm() > kLedTo_m;
 }
 
+/// A copy of that change may still be on its way to somebody.
+bool FormationGround::may_come(const Change& change) const {
+  return now_ < (change.number == number_ ? sent_at_ : begun_at_) + kMessageLife;
+}
+
 /// It has for a while, and takes up nothing that was sent.
 bool FormationGround::rests(VehicleId vehicle, const Member& member) const {
   const FormationStatus& status = member.status;
   if (member.lost || !status.at_rest || now_ - member.moved_at < kRests) return false;
   return std::ranges::none_of(sent_, [&](const Change& change) {
-    return change.number > status.progress.change && mover_of(change, vehicle);
+    return change.number > status.progress.change && may_come(change) && mover_of(change, vehicle);
   });
 }
 

@@ -27,7 +27,6 @@ constexpr std::uint64_t kMixStream = 0x6661756c74730002;
 constexpr double kSiteRoom_m = 60.0;
 constexpr double kEverywhere_m = 1e6;
 constexpr Duration kHeldBackMax = seconds{2};
-constexpr double kGustMax_mps = 2.0;
 constexpr std::size_t kLostMax = 2;
 constexpr double kLayer_m = 15.0;
 /// From here on vehicles are numbered that fly under a number of the team.
@@ -207,11 +206,20 @@ constexpr Raise kCovered = [](FaultParams& p) { raise(p.covered, 1); };
 constexpr Raise kStations = [](FaultParams& p) { raise(p.taken_over, 3); };
 constexpr Raise kPilot = [](FaultParams& p) { raise(p.pilots, 3); };
 constexpr Raise kBattery = [](FaultParams& p) { raise(p.batteries, 2); };
-constexpr Raise kWind = [](FaultParams& p) { raise(p.wind_mps, 5.0); };
+constexpr Raise kWind = [](FaultParams& p) {
+  raise(p.wind_mps, 5.0);
+  raise(p.gust_mps, 1.5);
+};
+constexpr Raise kGusts = [](FaultParams& p) {
+  kWind(p);
+  raise(p.gust_mps, 2.0);
+};
 constexpr Raise kNarrow = [](FaultParams& p) { p.narrow = true; };
 
 /// Of what takes vehicles, or the air, from the team: more of it would leave too little.
 constexpr double kRare = 0.15;
+/// By itself only.
+constexpr double kNever = 0.0;
 
 /// `mixed` draws from them in this order.
 constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
@@ -241,7 +249,8 @@ constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
                                Profile{"stations", kStations, nullptr, kRare},
                                Profile{"battery", kBattery, nullptr, kRare},
                                Profile{"wind", kWind, nullptr, kRare},
-                               Profile{"narrow", kNarrow, nullptr, kRare}};
+                               Profile{"narrow", kNarrow, nullptr, kRare},
+                               Profile{"gusts", kGusts, nullptr, kNever}};
 
 /// Each of these takes a vehicle from the team, besides crashes.
 constexpr std::array<Raise, 4> kLosing{kClock, kDouble, kAirframe, kBattery};
@@ -254,7 +263,8 @@ void mixed(FaultParams& params, std::uint64_t seed) {
   // Two are lost at most: with fewer vehicles a leader whose site is beyond them can keep the last
   // one that another site needs.
   for (const Profile& profile : kProfiles) {
-    if (profile.sites == nullptr || !random.chance(profile.share)) continue;
+    if (profile.sites == nullptr || profile.share == kNever) continue;
+    if (!random.chance(profile.share)) continue;
     const bool loses = contains(kLosing, profile.sites);
     if (loses && lost_besides == kLostMax) continue;
     profile.sites(params);
@@ -515,7 +525,7 @@ void draw_surroundings(Random& random, TeamMission& mission, const FaultParams& 
   if (params.wind_mps > 0.0) {
     const double speed_mps = random.uniform(0.0, params.wind_mps);
     mission.wind.steady_mps = speed_mps * unit_vector(random.uniform(-kPi, kPi));
-    mission.wind.gust_mps = random.uniform(0.0, kGustMax_mps);
+    mission.wind.gust_mps = random.uniform(0.0, params.gust_mps);
     mission.heeds_wind = true;
   }
   if (params.narrow) {

@@ -142,6 +142,7 @@ class FormationGround {
   void find_stuck(Instant now);
   [[nodiscard]] bool rests(VehicleId vehicle, const Member& member) const;
   [[nodiscard]] static bool leaves_in_vain(const Member& member);
+  [[nodiscard]] bool may_come(const formation::Change& change) const;
   [[nodiscard]] bool may_lead_out(Instant now) const;
   void clear_columns(Instant now);
   void forget_drift();
@@ -158,6 +159,8 @@ class FormationGround {
   std::optional<FormationOrder> order_;
   std::optional<formation::Change> change_;
   std::vector<formation::Change> sent_;  ///< that somebody may fly yet
+  Instant begun_at_{};                   ///< the newest change
+  Instant sent_at_{};                    ///< its last copy
   Instant send_next_{};
   std::uint32_t number_ = 0;
   std::uint32_t recalled_ = 0;  ///< the newest change of an earlier process

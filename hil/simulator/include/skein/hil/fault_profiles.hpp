@@ -63,7 +63,8 @@ struct FaultParams {
   std::size_t batteries = 0;  ///< a cell of them fails: whose it is must come home
   bool narrow = false;        ///< the air carries some ten kilobytes a second, of all together
   // World:
-  double wind_mps = 0.0;        ///< from anywhere, all the mission long, with gusts
+  double wind_mps = 0.0;        ///< from anywhere, all the mission long
+  double gust_mps = 0.0;        ///< in it: standard deviation at most
   std::size_t hazards = 0;      ///< appear in flight
   std::size_t covered = 0;      ///< sites over which one appears in flight
   std::size_t seen = 0;         ///< places that detectors tell of: false, doubled
