@@ -97,8 +97,11 @@ class FlownAgent : public HeardAgent {
       state.x_m = pose.x_m + beside_m.x();
       state.y_m = pose.y_m + beside_m.y();
       state.z_m = height_m_;
-      state.heading_rad = state.course_rad = pose.heading_rad;
-      state.groundspeed_mps = state.airspeed_mps = kTestSpeed_mps;
+      const Vec2 through_air = kTestSpeed_mps * unit_vector(pose.heading_rad) - wind_mps;
+      state.course_rad = pose.heading_rad;
+      state.heading_rad = std::atan2(through_air.y(), through_air.x());
+      state.groundspeed_mps = kTestSpeed_mps;
+      state.airspeed_mps = through_air.norm();
       state.distance_flown_m += kTestSpeed_mps * kFlownStep_s;
       see(state);
     }
@@ -117,6 +120,7 @@ class FlownAgent : public HeardAgent {
 
   VehicleState state;
   Vec2 beside_m{0.0, 0.0};
+  Vec2 wind_mps{0.0, 0.0};
 
  private:
   double height_m_;

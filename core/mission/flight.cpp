@@ -124,7 +124,7 @@ void Flight::start_route(const TimedPath& route) {
 }
 
 void Flight::fly(const TimedPath& timed) {
-  searching_ = homing_ = en_route_ = false;
+  searching_ = homing_ = en_route_ = at_will_ = false;
   search_goes_on_at_ = Instant::max();
   stands_by_.reset();
   search_marks_.clear();
@@ -238,7 +238,7 @@ TimedPath Flight::begun(Instant start, double speed_mps, double tail_curvature_p
 
 void Flight::take_up(const TimedPath& timed, Instant now) {
   if (searching_) pass_waypoints(now);
-  searching_ = homing_ = en_route_ = false;
+  searching_ = homing_ = en_route_ = at_will_ = false;
   search_goes_on_at_ = Instant::max();
   stands_by_.reset();
   replace(timed);
@@ -333,7 +333,7 @@ void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
 void Flight::hold_from(Instant at, const std::vector<Hazard>& hazards, Instant now) {
   Path way = forced_way(pose_at(at), hazards);
   const double tail = append_hold(way, hazards);
-  continue_with(at, way, tail, now);
+  if (continue_with(at, way, tail, now)) at_will_ = true;
 }
 
 std::optional<double> Flight::orbit_after(Path& path, double arc_curvature_per_m,
@@ -404,7 +404,7 @@ void Flight::search_from(Instant at, const std::vector<Hazard>& hazards, double 
   } else {
     goes_on = follow(at, search_, hazards, range_m, now).full;
   }
-  searching_ = true;
+  searching_ = at_will_ = true;
   search_goes_on_at_ = goes_on ? plan_.timed.end_time() - 2 * handover_ : Instant::max();
 }
 
@@ -413,7 +413,7 @@ void Flight::fly_home(const std::vector<Hazard>& hazards, Instant now) {
       follow(now + handover_, {home()}, hazards, std::numeric_limits<double>::infinity(), now)
           .reaches_last;
   searching_ = false;
-  homing_ = true;
+  homing_ = at_will_ = true;
   tries_home_at_ = reaches ? Instant::max() : now + kTriesHomeAgain;
   search_marks_.clear();
 }
@@ -439,6 +439,7 @@ void Flight::stand_by(SiteId site, const std::optional<Vec2>& place,
     hold(hazards, now);
   }
   stands_by_ = site;
+  at_will_ = true;
 }
 
 double Flight::way_home_m(const Pose2& from, const std::vector<Hazard>& hazards) const {

@@ -101,6 +101,9 @@ class Flight {
   /// When search() is to be called again, as a plan has no room for the whole of the route.
   [[nodiscard]] Instant search_goes_on_at() const { return search_goes_on_at_; }
   [[nodiscard]] bool homing() const { return homing_; }
+  /// Nobody counts with what is flown: a search, an orbit of hold() or stand_by(), the vehicle's
+  /// own way home.
+  [[nodiscard]] bool at_will() const { return at_will_; }
   /// The site that stand_by() was told of, while that is flown.
   [[nodiscard]] std::optional<SiteId> stands_by() const { return stands_by_; }
   /// The length of the way from there to where the first plan began, clear of hazards and within
@@ -192,6 +195,7 @@ class Flight {
   bool searching_ = false;
   Instant search_goes_on_at_ = Instant::max();
   bool homing_ = false;
+  bool at_will_ = false;
   Instant tries_home_at_ = Instant::max();
   std::optional<SiteId> stands_by_;
   bool en_route_ = false;

@@ -156,15 +156,14 @@ bool Ownship::keeps_in(Instant now) {
   return plans_anew(now);
 }
 
-/// Where nothing else hangs on what it flies.
 bool Ownship::plans_anew(Instant now) {
   if (flight_.homing()) {
     fly_home(now);
-  } else if (flight_.searching() || flight_.stands_by()) {
-    search(now);  // RelayOrbit finds another place
-  } else {
-    return false;
+    return true;
   }
+  if (!flight_.at_will()) return false;
+  const bool searches = flight_.searching() || flight_.stands_by();
+  searches ? search(now) : hold(now);  // RelayOrbit finds another place
   return true;
 }
 

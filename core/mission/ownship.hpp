@@ -26,7 +26,8 @@ class Ownship {
   /// Of every state, before on_state(): true where what is left of the range is another than by
   /// flying on.
   bool measures_range(const VehicleState& state) { return range_.on_state(state); }
-  /// Of every state, before on_state(): true where turns are planned at another radius from now on.
+  /// Of every state, before on_state(): true where what is planned from now on is of wider or
+  /// tighter turns, or of another wind.
   bool measures_wind(const VehicleState& state);
   /// False where it is no news.
   bool on_hazard(const HazardReport& report);
@@ -77,6 +78,9 @@ class Ownship {
     descent_.reset();
     flight_.fly_home(hazards(), now);
   }
+  /// A search, an orbit or a way home, from now on. False, and nothing changed, where others count
+  /// with what it flies.
+  bool plans_anew(Instant now);
   /// Is it in its orbit at home, where the plan has it?
   [[nodiscard]] bool at_home(Instant now) const;
   /// From there it comes down. False, and nothing changed, where a hazard bars that.
@@ -146,7 +150,6 @@ class Ownship {
   [[nodiscard]] Telemetry telemetry() const;
 
  private:
-  [[nodiscard]] bool plans_anew(Instant now);
   [[nodiscard]] bool is_at_route() const;
   [[nodiscard]] Pose2 begins_at(const VehicleState& state) const;
 

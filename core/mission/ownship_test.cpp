@@ -72,5 +72,37 @@ TEST(Ownship, AWayThatEndsWhereNoTurnMissesAHazardIsNotOpen) {
   }
 }
 
+/// Whatever it orbits for: what it began with is some way off its circle in another wind.
+TEST(Ownship, PlansAnewInAnotherWindWhatNobodyCountsWith) {
+  VehicleAgentConfig config = plane_config();
+  config.heeds_wind = true;
+  using enum CommandKind;
+  for (const CommandKind order : {hold, return_home, resume}) {
+    FlownAgent vehicle{config};
+    vehicle.fly(2.0);
+    vehicle.order(order);
+    vehicle.fly(120.0);
+    EXPECT_LT(vehicle.plan.timed.wind_mps().norm(), 1e-6);
+    const double calm_per_m = std::abs(vehicle.plan.timed.tail_curvature_per_m);
+    vehicle.wind_mps = {0.0, 7.0};
+    vehicle.fly(60.0);
+    EXPECT_NEAR(vehicle.plan.timed.wind_mps().y(), 7.0, 1.5);
+    EXPECT_LT(std::abs(vehicle.plan.timed.tail_curvature_per_m), 0.8 * calm_per_m);
+  }
+}
+
+TEST(Ownship, LeavesInAnotherWindWhatOthersCountWith) {
+  PartsBench bench;
+  const Instant at = bench.now + std::chrono::seconds{2};
+  Path way{bench.ownship.flight().pose_at(at), {}};
+  ASSERT_TRUE(way.append(Segment{0.0, 500.0}));
+  ASSERT_TRUE(bench.ownship.flight().continue_with(at, way, 0.01, bench.now));
+  const std::uint32_t number = bench.ownship.flight().plan().number;
+  EXPECT_FALSE(bench.ownship.plans_anew(bench.now));
+  EXPECT_EQ(bench.ownship.flight().plan().number, number);
+  bench.ownship.hold(bench.now);
+  EXPECT_TRUE(bench.ownship.plans_anew(bench.now));
+}
+
 }  // namespace
 }  // namespace skein::mission

@@ -25,15 +25,17 @@ void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   step(now);
 }
 
-/// What is flown for a time agreed on is not planned anew: the next plan is the wider one.
+/// What others count with is not planned anew: the next plan is the wider one.
 void VehicleAgent::Impl::watch_wind(const VehicleState& state, Instant now) {
   const bool lacked = ownship_.lacks_turn_room();
-  const bool replan =
-      ownship_.measures_wind(state) && ownship_.flight().started() && ownship_.flight().searching();
+  const bool is_news = ownship_.measures_wind(state);
   if (ownship_.lacks_turn_room() && !lacked) {
     outbox.report(event::VehicleTrouble{event::Trouble::turns_not_held}, {}, {}, now);
   }
-  if (replan) ownship_.search(now);
+  const Flight& flight = ownship_.flight();
+  if (is_news && flight.started() && flight.at_will() && !ownship_.landing()) {
+    ownship_.plans_anew(now);
+  }
 }
 
 void VehicleAgent::Impl::on_message(const Message& message, Instant now) {

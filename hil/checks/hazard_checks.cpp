@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "motion.hpp"
@@ -44,45 +46,66 @@ std::optional<Held> held(const RunRecord& record, const Recording& recorded,
   return Held{knows + from_seconds(limits.hazard_reaction_s), false};
 }
 
+Vec2 wind_of(const VehicleState& state) {
+  return state.groundspeed_mps * unit_vector(state.course_rad) -
+         state.airspeed_mps * unit_vector(state.heading_rad);
+}
+
 /// Where the vehicle is, what lies within its power, and what does not (the wind).
 struct Mover {
   Vec2 position;
   double heading_rad = 0.0;
   double airspeed_mps = 0.0;
-  double turn_rate_max = 0.0;  ///< rad/s: its turn radius is one through the air
+  double turn_radius_m = 0.0;  ///< the least: through the air and, as plans have it, over ground
   Vec2 wind;
+  double turned_rad = 0.0;
 
   [[nodiscard]] Vec2 velocity() const { return airspeed_mps * unit_vector(heading_rad) + wind; }
   void turn(double side, double seconds) {
-    heading_rad += 0.5 * side * turn_rate_max * seconds;
+    const Vec2 over_ground = velocity();
+    const double speed_mps = over_ground.norm();
+    // Over the ground the curvature of a turn is its rate times this by the speed cubed.
+    const double ahead_m2ps2 = airspeed_mps * unit_vector(heading_rad).dot(over_ground);
+    double rate_max = airspeed_mps / turn_radius_m;
+    if (ahead_m2ps2 > 0.0) {
+      rate_max = std::min(rate_max, std::pow(speed_mps, 3) / ahead_m2ps2 / turn_radius_m);
+    }
+    const double turn_rad = rate_max * seconds;
+    heading_rad += 0.5 * side * turn_rad;
     position += velocity() * seconds;
-    heading_rad += 0.5 * side * turn_rate_max * seconds;
+    heading_rad += 0.5 * side * turn_rad;
+    turned_rad += turn_rad;
   }
 };
 
 Mover mover_at(const VehicleState& state, const VehicleSpec& vehicle) {
-  const Vec2 over_ground = state.groundspeed_mps * unit_vector(state.course_rad);
-  const Vec2 through_air = state.airspeed_mps * unit_vector(state.heading_rad);
   return {{state.x_m, state.y_m},
           state.heading_rad,
           state.airspeed_mps,
-          state.airspeed_mps / vehicle.turn_radius_m,
-          over_ground - through_air};
+          vehicle.turn_radius_m,
+          wind_of(state)};
 }
 
-constexpr double kStep = 0.01;  ///< seconds: 0.5 m for the fastest vehicles
+constexpr double kStep_s = 0.01;      ///< 0.5 m for the fastest vehicles
+constexpr double kLongest_s = 300.0;  ///< a turn in a wind that it makes no way against
 
-/// Could the vehicle stay outside? The most that it can do is the tightest turn to one side, until
-/// it comes no nearer, and straight on: no other path passes farther off. So it cannot exactly when
-/// both turns lead into the hazard.
-bool could_stay_outside(const Mover& start, const Hazard& hazard) {
+/// Could the vehicle stay outside from the track's `first` point on, in the wind that there was
+/// then? The most that it can do is the tightest turn to one side, until it comes no nearer, and
+/// straight on: no other path passes farther off. So it cannot exactly when both turns lead into
+/// the hazard.
+bool could_stay_outside(std::span<const recording::TrackPoint> track, const VehicleSpec& vehicle,
+                        const Hazard& hazard) {
   const auto misses = [&](double side) {
-    Mover m = start;
-    for (double t = 0.0; t * m.turn_rate_max < kTwoPi; t += kStep) {
+    Mover m = mover_at(track.front().state, vehicle);
+    auto now = track.begin();
+    for (double t_s = 0.0; m.turned_rad < kTwoPi && t_s < kLongest_s; t_s += kStep_s) {
       const Vec2 from_centre = m.position - hazard.centre;
       if (from_centre.norm() < hazard.radius_m) return false;
       if (from_centre.dot(m.velocity()) >= 0.0) return true;
-      m.turn(side, kStep);
+      m.turn(side, kStep_s);
+      const Instant time = track.front().state.time + from_seconds(t_s);
+      while (std::next(now) != track.end() && std::next(now)->state.time <= time) ++now;
+      m.wind = wind_of(now->state);
     }
     return true;
   };
@@ -105,13 +128,13 @@ double way_out_s(const Mover& start, const Hazard& hazard) {
   double best = straight_out_s(start, hazard);
   for (const double side : {1.0, -1.0}) {
     Mover m = start;
-    for (double t = 0.0; t < best && t * m.turn_rate_max < kTwoPi; t += kStep) {
+    for (double t = 0.0; t < std::min(best, kLongest_s) && m.turned_rad < kTwoPi; t += kStep_s) {
       if ((m.position - hazard.centre).norm() >= hazard.radius_m) {
         best = t;
         break;
       }
       best = std::min(best, t + straight_out_s(m, hazard));
-      m.turn(side, kStep);
+      m.turn(side, kStep_s);
     }
   }
   return best;
@@ -140,7 +163,8 @@ std::optional<Excused> excused(const Recording& recorded, const VehicleSpec* veh
   std::size_t i = first_at(track, held.from);
   if (i == track.size()) return std::nullopt;
   if (clearance_m(track[i].state, known.hazard) >= 0.0) {
-    if (could_stay_outside(mover_at(track[i].state, *vehicle), known.hazard)) return std::nullopt;
+    const std::span flown = std::span{track}.subspan(i);
+    if (could_stay_outside(flown, *vehicle, known.hazard)) return std::nullopt;
     double clear = clearance_m(track[i].state, known.hazard);
     while (clear >= 0.0) {
       if (++i == track.size()) return std::nullopt;

@@ -208,18 +208,12 @@ constexpr Raise kPilot = [](FaultParams& p) { raise(p.pilots, 3); };
 constexpr Raise kBattery = [](FaultParams& p) { raise(p.batteries, 2); };
 constexpr Raise kWind = [](FaultParams& p) {
   raise(p.wind_mps, 5.0);
-  raise(p.gust_mps, 1.5);
-};
-constexpr Raise kGusts = [](FaultParams& p) {
-  kWind(p);
   raise(p.gust_mps, 2.0);
 };
 constexpr Raise kNarrow = [](FaultParams& p) { p.narrow = true; };
 
 /// Of what takes vehicles, or the air, from the team: more of it would leave too little.
 constexpr double kRare = 0.15;
-/// By itself only.
-constexpr double kNever = 0.0;
 
 /// `mixed` draws from them in this order.
 constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
@@ -249,8 +243,7 @@ constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
                                Profile{"stations", kStations, nullptr, kRare},
                                Profile{"battery", kBattery, nullptr, kRare},
                                Profile{"wind", kWind, nullptr, kRare},
-                               Profile{"narrow", kNarrow, nullptr, kRare},
-                               Profile{"gusts", kGusts, nullptr, kNever}};
+                               Profile{"narrow", kNarrow, nullptr, kRare}};
 
 /// Each of these takes a vehicle from the team, besides crashes.
 constexpr std::array<Raise, 4> kLosing{kClock, kDouble, kAirframe, kBattery};
@@ -263,8 +256,7 @@ void mixed(FaultParams& params, std::uint64_t seed) {
   // Two are lost at most: with fewer vehicles a leader whose site is beyond them can keep the last
   // one that another site needs.
   for (const Profile& profile : kProfiles) {
-    if (profile.sites == nullptr || profile.share == kNever) continue;
-    if (!random.chance(profile.share)) continue;
+    if (profile.sites == nullptr || !random.chance(profile.share)) continue;
     const bool loses = contains(kLosing, profile.sites);
     if (loses && lost_besides == kLostMax) continue;
     profile.sites(params);

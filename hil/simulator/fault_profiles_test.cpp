@@ -334,7 +334,7 @@ class Series : public testing::TestWithParam<const char*> {};
 TEST_P(Series, HoldsAndIsFinished) { EXPECT_EQ(broken(GetParam(), 30), ""); }
 INSTANTIATE_TEST_SUITE_P(Faults, Series,
                          testing::Values("airframe", "battery", "clocks", "covered", "crash",
-                                         "double", "gusts", "hazards", "joining", "lossy", "narrow",
+                                         "double", "hazards", "joining", "lossy", "narrow",
                                          "operator", "partition", "pilot", "sites", "stall",
                                          "stations", "wind"));
 

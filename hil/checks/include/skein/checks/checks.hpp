@@ -48,8 +48,8 @@ struct CheckResult {
 [[nodiscard]] CheckResult check_range(const RunRecord& record, const Limits& limits);
 /// No plan and no track enters a hazard from Limits::hazard_reaction_s after it is known on.
 /// Excused is who was inside at that moment, or so near that the tightest turn to either side, in
-/// the wind that it had, led into it; and only for the time of the shortest way out and
-/// Limits::hazard_leaving_s more. Coming back is not excused. Hazards known before the mission
+/// the wind that there was from then on, led into it; and only for the time of the shortest way out
+/// and Limits::hazard_leaving_s more. Coming back is not excused. Hazards known before the mission
 /// excuse nothing.
 [[nodiscard]] CheckResult check_hazards(const RunRecord& record, const Limits& limits);
 
