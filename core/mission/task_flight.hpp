@@ -56,6 +56,7 @@ class TaskFlight {
   planning::TaskPlan plan;
   bool untimely = false;  ///< it has been told that the wind does not let it be on time
   bool strayed = false;   ///< from its arc (Ownship::on_arc), since it has begun
+  Duration late{};        ///< that a delivery is over its site, as the wind has it
 
   /// Precondition: the table has it.
   void fire(Event event) {
@@ -90,6 +91,8 @@ class TaskFlight {
   /// When the task's own run begins: the gate of a delivery, the entry of an arc.
   [[nodiscard]] Instant begin_time() const { return plan.timed.time_at(plan.gate_m); }
   [[nodiscard]] Instant end_time() const { return plan.timed.end_time(); }
+  /// It is over, and something else may be flown.
+  [[nodiscard]] Instant over_time() const { return end_time() + late; }
 
  private:
   StateMachine<State, Event> machine_{kTable, State::planned};

@@ -21,6 +21,8 @@ constexpr double kRunOut = 2.0;  ///< times the lead of turns, over the site and
 constexpr double kLateFrom_s = 0.1;
 constexpr double kLateMost_s = 1.0;
 constexpr double kBeyond_s = 0.5;  ///< beyond where it is by then
+constexpr double kStraight_m = 1.0;
+constexpr Duration kLooksAhead = std::chrono::seconds{1};
 constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two looks at a task's time
 /// That it has not bid is told for so long.
@@ -35,6 +37,12 @@ Flight::Pace pace_over(const TimedPath& plan, double length_m, Instant from, Ins
   const double takes_s = to_seconds(until - from);
   const bool differs = plan.has_wind() && length_m > 0.0 && takes_s > 0.0;
   return {differs ? length_m / takes_s : plan.speed_mps, length_m, until};
+}
+
+/// By less, nothing is changed.
+double late_by_s(const Ownship& ownship, double speed_mps) {
+  const double late_s = -ownship.along_m() / speed_mps;
+  return late_s > kLateFrom_s ? std::min(late_s, kLateMost_s) : 0.0;
 }
 }  // namespace
 
@@ -294,7 +302,9 @@ void TaskFlyer::fly(Instant now) {
     const double radius_m = ownship_.spec().assess_radius_m;
     task_->strayed = task_->strayed || !ownship_.on_arc(task_->site.position, radius_m);
   }
-  if (task_->in(TaskFlight::State::begun) && now >= task_->end_time()) end(now);
+  if (!task_->in(TaskFlight::State::begun)) return;
+  if (task_->is_delivery() && now >= task_->end_time() - kLooksAhead) run_on(now);
+  if (now >= task_->over_time()) end(now);
 }
 
 /// Where the wind takes more than the vehicle's speed has, another path keeps the time: at a speed
@@ -358,8 +368,8 @@ void TaskFlyer::commit_delivery(Instant now) {
 /// and over it by who begins turns early. Where there is no room for it, less, or none.
 void TaskFlyer::run_out(Path& path, double speed_mps) const {
   const double early_s = kRunOut * ownship_.config().turn_lead_s;
-  const double late_s = std::min(-ownship_.along_m() / speed_mps, kLateMost_s);
-  const double longest_s = late_s > kLateFrom_s ? early_s + late_s + kBeyond_s : early_s;
+  const double late_s = late_by_s(ownship_, speed_mps);
+  const double longest_s = late_s > 0.0 ? early_s + late_s + kBeyond_s : early_s;
   for (const double run_s : {longest_s, early_s}) {
     if (run_s <= 0.0) return;
     const Segment straight{0.0, run_s * speed_mps};
@@ -371,6 +381,26 @@ void TaskFlyer::run_out(Path& path, double speed_mps) const {
     (void)path.append(straight);  // without room for it the turn follows at once
     return;
   }
+}
+
+/// Whom the wind has made late since it committed.
+void TaskFlyer::run_on(Instant now) {
+  Flight& flight = ownship_.flight();
+  const TimedPath& flown = flight.plan().timed;
+  const double late_s = late_by_s(ownship_, flown.speed_mps);
+  if (late_s == 0.0 || task_->late > Duration{}) return;
+  task_->late = from_seconds(late_s);
+  const Instant at = now + flight.handover();
+  const double begin_m = flown.distance_at(at);
+  const bool runs_out = flown.path.length_m() > flown.on_time_m + kStraight_m;
+  if (runs_out || begin_m >= flown.on_time_m) return;
+  auto rest = flown.piece(begin_m, flown.path.length_m());
+  if (!rest) return;
+  const double to_site_m = rest->length_m();
+  run_out(*rest, flown.speed_mps);
+  const double tail = flight.hold_curvature(rest->end(), ownship_.hazards());
+  flight.continue_with(at, *rest, tail, now,
+                       pace_over(flown, to_site_m, at, task_->assignment.time));
 }
 
 void TaskFlyer::begin(Instant now) {
@@ -442,7 +472,7 @@ Instant TaskFlyer::next_timeout() const {
   if (!task_ || task_->in(TaskFlight::State::late))
     return next;  // who is late waits for its leader
   const bool begun = task_->in(TaskFlight::State::begun);
-  return std::min(next, begun ? task_->end_time() : task_->begin_time());
+  return std::min(next, begun ? task_->over_time() : task_->begin_time());
 }
 
 Instant TaskFlyer::quiet_until(bool may_lead, Instant now) const {
@@ -453,6 +483,9 @@ Instant TaskFlyer::quiet_until(bool may_lead, Instant now) const {
   if (keeps_time) next = std::min(next, time_again_);
   if (task_->accepts(TaskFlight::Event::committed)) {
     next = std::min(next, task_->begin_time() - kCommitLead);
+  }
+  if (delivers() && task_->in(TaskFlight::State::begun)) {
+    next = std::min(next, task_->end_time() - kLooksAhead);
   }
   return next;
 }

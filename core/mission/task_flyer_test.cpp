@@ -291,6 +291,26 @@ TEST(TaskFlyer, WhoIsLateTurnsAwayOnlyBeyondTheSite) {
   }
 }
 
+/// What it flies next turns away at once.
+TEST(TaskFlyer, WhomTheWindMakesLateInItsRunIsDoneWhenItHasPassedTheSite) {
+  for (const double late_m : {0.0, 12.0}) {
+    Flying f;
+    f.call();
+    f.award(60.0, 120.0);
+    f.grant();
+    f.fly_until(58.0);
+    ASSERT_TRUE(f.flyer.in_run());
+    f.beside_m = {0.0, -late_m};
+    f.fly_until(59.9);
+    const double heading_rad = f.ownship.flight().pose_at(at_seconds(60.9)).heading_rad;
+    EXPECT_EQ(std::abs(wrap_pi(heading_rad - kPi / 2.0)) < 1e-6, late_m > 0.0);
+    f.fly_until(60.0 + late_m / kTestSpeed_mps - 0.05);
+    EXPECT_EQ(f.reported(EventKind::task_done), 0);
+    f.fly_until(60.0 + late_m / kTestSpeed_mps + 0.2);
+    EXPECT_EQ(f.reported(EventKind::task_done), 1);
+  }
+}
+
 /// The way there, timed as its plan has it, takes no more of the airspeed in one wind than in
 /// another.
 TEST(TaskFlyer, InWindItBidsAndPlansAtCruiseSpeedThroughTheAir) {
