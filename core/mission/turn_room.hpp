@@ -36,9 +36,9 @@ class TurnRoom {
 
   VehicleSpec vehicle_;
   bool heeds_wind_;
+  bool lacks_room_ = false;
   double widest_m_ = 0.0;
   double radius_m_ = 0.0;
-  bool lacks_room_ = false;
   Vec2 wind_mps_{0.0, 0.0};
   double gusts_m2ps2_ = 0.0;         ///< mean square of what the wind is beside its mean
   Vec2 planned_wind_mps_{0.0, 0.0};  ///< when on_state() was last true
