@@ -238,6 +238,10 @@ int plan(const PlanArguments& arguments) {
   if (!scenario) return fail(scenario.error().message, skein::process::kExitBadInput);
   if (arguments.seed) scenario->seed = *arguments.seed;
   if (scenario->flies_routes()) return plan_routes(arguments, *scenario);
+  if (scenario->sites.empty()) {
+    return fail(arguments.scenario + ": the mission has neither routes nor sites to plan",
+                skein::process::kExitBadInput);
+  }
   if (arguments.all_known) {
     scenario->tasking.known.clear();
     for (const skein::Site& site : scenario->sites) scenario->tasking.known.push_back(site.id);

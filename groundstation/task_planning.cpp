@@ -89,7 +89,7 @@ Result<PlannedTasks> plan_tasks(const Scenario& scenario, const planning::Planni
   if (!scenario.tasks_sites()) {
     return Error{
         "the mission plans no routes, and no site is known before take-off; name some under "
-        "tasking.known"};
+        "tasking.known, or all with --all-known"};
   }
   PlannedTasks planned;
   planned.problem = tasking_problem(scenario);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "agent_parts_test.hpp"
+#include "skein/planning/avoidance.hpp"
 
 namespace skein::mission {
 namespace {
@@ -50,6 +51,29 @@ TEST(Scout, SurveysWhatItFindsAndSaysThatItIsToBeLed) {
   EXPECT_EQ(site->site.id, SiteId{1});
   EXPECT_EQ(s.scout.state(), State::idle);
   EXPECT_EQ(s.reported(EventKind::survey_done), 1);
+}
+
+/// A survey is flown to its end where a hazard has become known on the orbit behind it; who then
+/// leads the site would circle on there.
+TEST(Scout, WhoLeadsCirclesClearOfWhatBecameKnownDuringItsSurvey) {
+  FlownAgent vehicle{plane_config()};
+  vehicle.fly(1.0);
+  vehicle.tell(SiteReport{{4}, test_site(5)});
+  while (vehicle.agent.activity() != Activity::surveying) vehicle.fly(0.5);
+  const TimedPath survey = vehicle.plan.timed;
+  const double half_lap_m = kPi / std::abs(survey.tail_curvature_per_m);
+  const Pose2 on_orbit = survey.pose_at_distance(survey.path.length_m() + half_lap_m);
+  const std::vector<Hazard> hazards{{HazardId{1}, on_orbit.position(), 20.0}};
+  vehicle.tell(HazardReport{hazards.front()});
+  EXPECT_EQ(vehicle.plan.timed.path.length_m(), survey.path.length_m()) << "it is flown on";
+  while (vehicle.agent.activity() == Activity::surveying) vehicle.fly(0.5);
+  ASSERT_EQ(vehicle.agent.activity(), Activity::leading);
+  vehicle.fly(0.5);
+  const TimedPath& after = vehicle.plan.timed;
+  const double lap_m = kTwoPi / std::abs(after.tail_curvature_per_m);
+  const auto orbit = after.piece(0.0, after.path.length_m() + lap_m);
+  ASSERT_TRUE(orbit);
+  EXPECT_TRUE(planning::is_clear(*orbit, hazards));
 }
 
 TEST(Scout, ASurveyWhoseArcWasLeftIsFlownAgain) {

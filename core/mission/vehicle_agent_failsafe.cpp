@@ -142,7 +142,10 @@ void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
   if (flyer_.detour(hazard.id, now)) return;
   // A task, a survey or a route is flown on where the hazard is near but does not bar the way.
   const bool bound = flyer_.flying() || scout_.flying() || ownship_.flight().en_route(now);
-  if (bound && ownship_.way_is_open(now) && flyer_.run_is_open()) return;
+  if (bound && ownship_.way_is_open(now) && flyer_.run_is_open()) {
+    look_beyond_ = true;
+    return;
+  }
   respond(*failsafe_.update(now, {.path_barred = true}), now);
 }
 

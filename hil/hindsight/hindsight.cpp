@@ -119,7 +119,7 @@ std::string text_of(const Hindsight& hindsight) {
   };
   std::string text = line({"knowing all from the start", "flown", "best found", "bound", "ratio"});
   for (const Row& row : table_of(hindsight)) text += line(row);
-  return text;
+  return text + "A ratio of 1 is the best: times are over it, rewards under it.\n";
 }
 
 std::string comparison_text(const Result<Hindsight>& looked) {

@@ -32,6 +32,7 @@ std::string written(const Series& series) {
   line("program", series.program);
   line("file", series.file);
   line("faults", series.faults);
+  if (!series.plan.empty()) line("plan", series.plan);
   line("first_seed", std::to_string(series.first_seed));
   line("runs", std::to_string(series.runs));
   if (!series.shard.whole()) line("shard", to_string(series.shard));
@@ -58,6 +59,7 @@ std::optional<Series> parse(const std::string& text) {
   series.program = values["program"];
   series.file = values["file"];
   series.faults = values["faults"];
+  series.plan = values["plan"];
   series.first_seed = *first_seed;
   series.runs = *runs;
   series.shard = *shard;
@@ -125,6 +127,9 @@ Result<void> same_series(const Series& series, const std::string& here, const Se
   if (auto kind = same("kind", series.kind, other.kind); !kind) return kind;
   if (auto program = same("program", series.program, other.program); !program) return program;
   if (auto faults = same("faults", series.faults, other.faults); !faults) return faults;
+  // Which one, its folder's scenario tells.
+  const auto planned = [](const Series& s) { return s.plan.empty() ? "none" : "a plan"; };
+  if (auto plan = same("plan (--routes)", planned(series), planned(other)); !plan) return plan;
   return same("first seed", std::to_string(series.first_seed), std::to_string(other.first_seed));
 }
 

@@ -22,6 +22,7 @@ class RunFolders : public ::testing::Test {
     series_.program = "0.2.0+g1";
     series_.file = "a folder/with: odd\nname|s.yaml";
     series_.faults = "mixed,lossy";
+    series_.plan = "a plan.yaml";
     series_.first_seed = 18446744073709551615U;
     series_.runs = 12;
     series_.shard = {3, 16};
@@ -40,6 +41,7 @@ TEST_F(RunFolders, KeepTheirSeries) {
   EXPECT_EQ(read->program, series_.program);
   EXPECT_EQ(read->file, series_.file);
   EXPECT_EQ(read->faults, series_.faults);
+  EXPECT_EQ(read->plan, series_.plan);
   EXPECT_EQ(read->first_seed, series_.first_seed);
   EXPECT_EQ(read->runs, series_.runs);
   EXPECT_EQ(to_string(read->shard), "3/16");
@@ -67,6 +69,9 @@ TEST_F(RunFolders, AreOneExperiments) {
   other = series_;
   other.faults = "none";
   EXPECT_THAT(refused(other), HasSubstr("of the faults mixed,lossy"));
+  other = series_;
+  other.plan.clear();
+  EXPECT_THAT(refused(other), HasSubstr("of the plan (--routes) a plan, and those of"));
   other = series_;
   other.kind = "formation";
   EXPECT_THAT(refused(other), HasSubstr("of the kind sites"));

@@ -78,6 +78,7 @@ std::string command_of(const MergeArguments& arguments, const shards::Series& wh
                                  is_sweep(whole) ? "sweep" : "simulate", whole.file, whole.runs);
   if (!is_sweep(whole)) text += fmt::format(" --seed {}", whole.first_seed);
   if (whole.faults != "none") text += " --faults " + whole.faults;
+  if (!whole.plan.empty()) text += " --routes " + whole.plan;
   return text +
          fmt::format(" --shard {} --out {}", shards::to_string(shard), folder_of(shard, parts));
 }

@@ -31,6 +31,7 @@ shards::Series series_of(const configuration::Scenario& scenario,
   series.program = version();
   series.file = arguments.scenario.string();
   series.faults = arguments.faults;
+  series.plan = arguments.routes.string();
   series.first_seed = scenario.seed;
   series.runs = *arguments.runs;
   series.shard = arguments.shard;

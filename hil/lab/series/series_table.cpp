@@ -9,6 +9,7 @@ namespace skein::series {
 namespace {
 
 constexpr const char* kScenarioFile = "scenario.yaml";
+constexpr const char* kScenarioAndPlan = "scenario, or its plan (--routes),";
 constexpr const char* kRunsFile = "runs.csv";
 
 /// The file's text as comments, so that the whole stays a scenario.
@@ -45,7 +46,7 @@ Result<SeriesTable> SeriesTable::open(const std::filesystem::path& folder,
                                       const shards::Series& series, const std::string& scenario) {
   auto opened = shards::RunFolder::open(folder, series);
   if (!opened) return opened.error();
-  if (auto kept = shards::keep_text(folder / kScenarioFile, scenario, "scenario"); !kept)
+  if (auto kept = shards::keep_text(folder / kScenarioFile, scenario, kScenarioAndPlan); !kept)
     return kept.error();
   const bool formation = series.kind == kFormation;
   auto rows =
@@ -91,8 +92,9 @@ std::string scenario_of(const std::filesystem::path& folder) {
 Result<void> same_scenario(const std::filesystem::path& folder,
                            const std::filesystem::path& other) {
   if (scenario_of(folder) == scenario_of(other)) return {};
-  return Error{fmt::format("{} and {} differ: their runs are of different scenarios",
-                           (folder / kScenarioFile).string(), (other / kScenarioFile).string())};
+  return Error{
+      fmt::format("{} and {} differ: their runs are of different scenarios, or plans (--routes)",
+                  (folder / kScenarioFile).string(), (other / kScenarioFile).string())};
 }
 
 Result<void> write_summary(const Summary& summary, const std::filesystem::path& folder) {

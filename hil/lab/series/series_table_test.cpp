@@ -84,7 +84,8 @@ TEST_F(SeriesTables, AreOfOneScenario) {
   EXPECT_TRUE(same_scenario(root_ / "a", root_ / "b"));
   const auto other = SeriesTable::open(root_ / "a", series_, "another\n");
   ASSERT_FALSE(other);
-  EXPECT_THAT(other.error().message, HasSubstr("the scenario has changed"));
+  EXPECT_THAT(other.error().message,
+              HasSubstr("the scenario, or its plan (--routes), has changed"));
   ASSERT_TRUE(SeriesTable::open(root_ / "c", series_, "another\n"));
   const auto differ = same_scenario(root_ / "a", root_ / "c");
   ASSERT_FALSE(differ);

@@ -48,8 +48,11 @@ Summary::Summary(shards::Series series, std::string program)
       formation_{series_.kind == kFormation} {}
 
 std::string Summary::again(const RunRow& row) const {
+  std::string options;
+  if (series_.faults != "none") options += " --faults " + series_.faults;
+  if (!series_.plan.empty()) options += " --routes " + series_.plan;
   return fmt::format("  again: {} simulate {} --seed {}{} --trace\n", program_, series_.file,
-                     row.seed, series_.faults == "none" ? "" : " --faults " + series_.faults);
+                     row.seed, options);
 }
 
 void Summary::add(const RunRow& row) {

@@ -19,6 +19,7 @@ shards::Series series(const char* kind) {
   series.kind = kind;
   series.file = "s.yaml";
   series.faults = "mixed";
+  if (series.kind == kSites) series.plan = "plan.yaml";
   series.separation_m = 2.5;
   return series;
 }
@@ -38,7 +39,7 @@ TEST(Summaries, CountRunsOfSites) {
   EXPECT_EQ(summary.text(),
             "seed 3 VIOLATED\n"
             "  leases: 3.00 s, U1: twice (and 1 more)\n"
-            "  again: hil simulate s.yaml --seed 3 --faults mixed --trace\n"
+            "  again: hil simulate s.yaml --seed 3 --faults mixed --routes plan.yaml --trace\n"
             "runs       3, seeds 1 to 3\n"
             "violated   1; leases 1\n"
             "excused    4 in 1 runs, proven unavoidable: seeds 2\n"

@@ -18,13 +18,14 @@ struct Series {
   std::string program;  ///< its version(): another one may fly otherwise
   std::string file;     ///< the scenario or experiment, as the command line named it
   std::string faults = "none";
+  std::string plan;  ///< of tasks, flown from the begin, as --routes named it; empty: none
   std::uint64_t first_seed = 1;
   std::size_t runs = 1;  ///< of a sweep: of each cell
   Shard shard;
   double separation_m = 0.0;  ///< that a formation wants
 };
 
-/// Whether two are of one experiment; file, runs and shard may differ. Fails with what differs;
+/// Whether two are of one experiment; names of files, runs and shard may differ. Fails with what differs;
 /// `here` and `there` are where they were read.
 [[nodiscard]] Result<void> same_series(const Series& series, const std::string& here,
                                        const Series& other, const std::string& there);
