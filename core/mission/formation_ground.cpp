@@ -299,11 +299,15 @@ std::optional<std::size_t> FormationGround::may_fly(const Change& change, Vehicl
   return mover_of(change, vehicle);
 }
 
+/// Silent since, it is known to be with nobody.
+bool FormationGround::is_with_pilot(const Member& member) const {
+  return member.piloted && now_ - member.heard_at < config_.silence;
+}
+
 /// On its way to the goal of the change that it was heard in, or of one that it may have taken up
 /// since.
 std::vector<Vec3> FormationGround::may_be(VehicleId vehicle, const Member& member) const {
-  const bool is_seen = now_ - member.heard_at < config_.silence;
-  if (member.piloted && is_seen) return {member.status.position_m};
+  if (is_with_pilot(member)) return {member.status.position_m};
   const Vec3& seen = member.status.reference_m;
   std::vector<Vec3> places{seen};
   // The others stop before where it was heard to be beside it (FormationAgent).
@@ -635,7 +639,7 @@ void FormationGround::clear_columns(Instant now) {
   look_below_at_ = now + kLookBelow;
   auto columns = keep_outs();
   std::erase_if(columns, [this](const formation::KeepOut& column) {
-    return members_.at(column.vehicle).piloted;
+    return is_with_pilot(members_.at(column.vehicle));
   });
   const formation::Separation apart = separation();
   for (const auto& [vehicle, member] : members_) {

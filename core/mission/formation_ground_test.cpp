@@ -387,7 +387,8 @@ TEST(FormationGround, WhoHasNotHeardOfTheRoomToBeMadeIsToldAgain) {
 /// The second is led over the first, the third far along; the second is lost above the first, which
 /// was silent when the order was given.
 struct LostAboveOne : Team {
-  LostAboveOne() : Team{{{0.0, 0.0, 0.0}, {0.0, 6.0, 0.0}, {0.0, 120.0, 0.0}}} {
+  explicit LostAboveOne(bool has_pilot = false)
+      : Team{{{0.0, 0.0, 0.0}, {0.0, 6.0, 0.0}, {0.0, 120.0, 0.0}}} {
     EXPECT_TRUE(goes_up());
     lose(0);
     EXPECT_TRUE(until([this] { return ground().members().at({1}).lost; }));
@@ -395,6 +396,10 @@ struct LostAboveOne : Team {
     order.shape.spacing_m = 12.0;
     EXPECT_TRUE(command(order).ok());
     EXPECT_TRUE(until([this] { return beside_m() < 0.5; }));
+    if (has_pilot) {
+      be_piloted(1, true);
+      EXPECT_TRUE(until([this] { return ground().members().at({2}).piloted; }));
+    }
     lose(1);
     come_back(0);
   }
@@ -410,6 +415,11 @@ TEST(FormationGround, WhoRestsBelowOneThatIsLostLeavesWhileOthersStillFly) {
   ASSERT_TRUE(team.until([&] { return team.ground().in_place(); })) << "the order is given again";
   EXPECT_FALSE(team.ground().members().at({1}).lost);
   EXPECT_EQ(team.count(EventKind::change_begun), 4U);
+}
+
+TEST(FormationGround, WhoRestsBelowOneThatIsSilentSinceAPilotHasItLeaves) {
+  LostAboveOne team{true};
+  EXPECT_TRUE(team.until([&] { return team.beside_m() > 2.99; }));
 }
 
 TEST(FormationGround, WhoCannotLeaveIsToldSoOnceAndNotForEver) {

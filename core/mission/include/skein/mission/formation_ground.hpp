@@ -130,6 +130,7 @@ class FormationGround {
   [[nodiscard]] Result<void> may_be_flown(const std::vector<formation::Transfer>& transfers) const;
   [[nodiscard]] static std::optional<std::size_t> may_fly(const formation::Change& change,
                                                           VehicleId vehicle, const Member& member);
+  [[nodiscard]] bool is_with_pilot(const Member& member) const;
   [[nodiscard]] std::vector<Vec3> may_be(VehicleId vehicle, const Member& member) const;
   [[nodiscard]] std::string unknown() const;
   void begin(FormationPreview preview, Instant now);
