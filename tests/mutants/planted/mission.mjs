@@ -241,7 +241,7 @@ export default [
     slip: 'changes keep clear of where a piloted vehicle was led to, not of where it is',
     promise: 'separation is kept from whom its pilot has',
     file: 'core/mission/formation_ground.cpp',
-    from: 'if (member.piloted && is_seen) return {member.status.position_m};',
-    to: 'if (member.piloted && is_seen) return {member.status.reference_m};',
+    from: 'if (is_with_pilot(member)) return {member.status.position_m};',
+    to: 'if (is_with_pilot(member)) return {member.status.reference_m};',
   },
 ];
