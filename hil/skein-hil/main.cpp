@@ -245,8 +245,8 @@ void add_changes(CLI::App& app, const std::string& program, int& status) {
   add_first_seed(*command, "--first-seed", arguments->first_seed);
   add_jobs(*command, arguments->jobs, "Changes");
   command->footer(
-      "Ends with status 0 if nobody is seen nearer than separation and reserve, 1 if somebody is. The\n"
-      "least distance that is printed is less by what ways can bend between two looks.\n"
+      "Ends with status 0 if nobody is seen nearer than separation and reserve, 1 if somebody is.\n"
+      "The least distance that is printed is less by what ways can bend between two looks.\n"
       "Example: skein-hil changes --runs 10000");
   command->callback([arguments, &status] { status = changes(*arguments); });
 }

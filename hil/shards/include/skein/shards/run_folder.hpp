@@ -25,8 +25,8 @@ struct Series {
   double separation_m = 0.0;  ///< that a formation wants
 };
 
-/// Whether two are of one experiment; names of files, runs and shard may differ. Fails with what differs;
-/// `here` and `there` are where they were read.
+/// Whether two are of one experiment; names of files, runs and shard may differ. Fails with what
+/// differs; `here` and `there` are where they were read.
 [[nodiscard]] Result<void> same_series(const Series& series, const std::string& here,
                                        const Series& other, const std::string& there);
 
