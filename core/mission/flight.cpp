@@ -146,6 +146,7 @@ void Flight::land(const Landing& landing) {
 void Flight::replace(const TimedPath& timed) {
   plan_.timed = timed;
   plan_.lands = false;
+  orbit_barred_ = false;
   ++plan_.number;
   fresh_ = true;
 }

@@ -104,6 +104,9 @@ class Flight {
   /// Nobody counts with what is flown: a search, an orbit of hold() or stand_by(), the vehicle's
   /// own way home.
   [[nodiscard]] bool at_will() const { return at_will_; }
+  /// A hazard may lie on the orbit that this plan ends in, though not on its way there.
+  void set_orbit_barred() { orbit_barred_ = true; }
+  [[nodiscard]] bool orbit_barred() const { return orbit_barred_; }
   /// The site that stand_by() was told of, while that is flown.
   [[nodiscard]] std::optional<SiteId> stands_by() const { return stands_by_; }
   /// The length of the way from there to where the first plan began, clear of hazards and within
@@ -199,6 +202,7 @@ class Flight {
   Instant tries_home_at_ = Instant::max();
   std::optional<SiteId> stands_by_;
   bool en_route_ = false;
+  bool orbit_barred_ = false;
   bool fresh_ = false;
 };
 

@@ -143,7 +143,7 @@ void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
   // A task, a survey or a route is flown on where the hazard is near but does not bar the way.
   const bool bound = flyer_.flying() || scout_.flying() || ownship_.flight().en_route(now);
   if (bound && ownship_.way_is_open(now) && flyer_.run_is_open()) {
-    look_beyond_ = true;
+    ownship_.flight().set_orbit_barred();
     return;
   }
   respond(*failsafe_.update(now, {.path_barred = true}), now);

@@ -91,7 +91,6 @@ class VehicleAgent::Impl {
   std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   bool lands_ = false;                         ///< by order, once it is at home
   bool told_barred_ = false;                   ///< that a hazard keeps it from that
-  bool look_beyond_ = false;                   ///< a hazard may lie on what follows what it flies
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };
 
