@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -82,6 +83,15 @@ struct HeardAgent {
   }
 };
 
+/// At kTestSpeed_mps over the ground.
+inline void move_in_wind(VehicleState& state, double course_rad, const Vec2& wind_mps) {
+  const Vec2 through_air = kTestSpeed_mps * unit_vector(course_rad) - wind_mps;
+  state.course_rad = course_rad;
+  state.heading_rad = std::atan2(through_air.y(), through_air.x());
+  state.groundspeed_mps = kTestSpeed_mps;
+  state.airspeed_mps = through_air.norm();
+}
+
 /// A plane that is exactly where its plan has it, or so far beside.
 class FlownAgent : public HeardAgent {
  public:
@@ -97,11 +107,7 @@ class FlownAgent : public HeardAgent {
       state.x_m = pose.x_m + beside_m.x();
       state.y_m = pose.y_m + beside_m.y();
       state.z_m = height_m_;
-      const Vec2 through_air = kTestSpeed_mps * unit_vector(pose.heading_rad) - wind_mps;
-      state.course_rad = pose.heading_rad;
-      state.heading_rad = std::atan2(through_air.y(), through_air.x());
-      state.groundspeed_mps = kTestSpeed_mps;
-      state.airspeed_mps = through_air.norm();
+      move_in_wind(state, pose.heading_rad, wind_mps);
       state.distance_flown_m += kTestSpeed_mps * kFlownStep_s;
       see(state);
     }
@@ -143,11 +149,7 @@ struct PartsBench {
     const Pose2 pose = ownship.flight().started() ? ownship.flight().pose_at(now) : Pose2{};
     state.x_m = pose.x_m + beside_m.x();
     state.y_m = pose.y_m + beside_m.y();
-    const Vec2 through_air = kTestSpeed_mps * unit_vector(pose.heading_rad) - wind_mps;
-    state.course_rad = pose.heading_rad;
-    state.heading_rad = std::atan2(through_air.y(), through_air.x());
-    state.groundspeed_mps = kTestSpeed_mps;
-    state.airspeed_mps = through_air.norm();
+    move_in_wind(state, pose.heading_rad, wind_mps);
     state.distance_flown_m = seconds * kTestSpeed_mps;
     (void)ownship.measures_wind(state);
     ownship.on_state(state, now);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "fence_way.hpp"
@@ -104,9 +105,10 @@ class Flight {
   /// Nobody counts with what is flown: a search, an orbit of hold() or stand_by(), the vehicle's
   /// own way home.
   [[nodiscard]] bool at_will() const { return at_will_; }
-  /// A hazard may lie on the orbit that this plan ends in, though not on its way there.
+  /// A hazard may lie on the orbit that this plan ends in, though not on its way there. Asked for
+  /// once.
   void set_orbit_barred() { orbit_barred_ = true; }
-  [[nodiscard]] bool orbit_barred() const { return orbit_barred_; }
+  [[nodiscard]] bool poll_orbit_barred() { return std::exchange(orbit_barred_, false); }
   /// The site that stand_by() was told of, while that is flown.
   [[nodiscard]] std::optional<SiteId> stands_by() const { return stands_by_; }
   /// The length of the way from there to where the first plan began, clear of hazards and within

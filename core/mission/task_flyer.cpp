@@ -20,8 +20,9 @@ constexpr Duration kCommitLatest = std::chrono::milliseconds{150};
 constexpr double kRunOut = 2.0;  ///< times the lead of turns, over the site and straight on
 constexpr double kLateFrom_s = 0.1;
 constexpr double kLateMost_s = 1.0;
-constexpr double kBeyond_s = 0.5;  ///< beyond where it is by then
-constexpr double kStraight_m = 1.0;
+constexpr double kBeyond_s = 0.5;    ///< beyond where it is by then
+constexpr double kStraight_m = 1.0;  ///< more of a plan than that behind the site runs out
+/// Before its end a run is looked at once more, whether it is late.
 constexpr Duration kLooksAhead = std::chrono::seconds{1};
 constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
 constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two looks at a task's time
@@ -344,7 +345,7 @@ void TaskFlyer::commit_delivery(Instant now) {
   if (!participant_.holds(task_->assignment.task, now, task_->end_time())) return;
   if (!run_is_open()) return;
   SKEIN_ASSERT(task_->authorised());
-  Flight& flight = ownship_.flight();
+  const Flight& flight = ownship_.flight();
   const auto& timed = task_->plan.timed;
   const Instant at = std::max(now, timed.start_time);
   double begin_m = timed.distance_at(at);
@@ -354,14 +355,19 @@ void TaskFlyer::commit_delivery(Instant now) {
     begin_m = std::clamp(task_->plan.gate_m - to_gate_m, 0.0, task_->plan.gate_m);
   }
   auto rest = timed.piece(begin_m, timed.path.length_m());
-  if (!rest) return;
-  const double to_site_m = rest->length_m();
-  run_out(*rest, timed.speed_mps);
-  const double tail = flight.hold_curvature(rest->end(), ownship_.hazards());
-  if (flight.continue_with(at, *rest, tail, now,
-                           pace_over(timed, to_site_m, at, task_->assignment.time))) {
+  if (rest && fly_run(*std::move(rest), timed, at, now)) {
     task_->fire(TaskFlight::Event::committed);
   }
+}
+
+/// From `at` on what is left of `timed` as far as the site, over it on time, and beyond. False, and
+/// nothing changed, where that has too many pieces.
+bool TaskFlyer::fly_run(Path rest, const TimedPath& timed, Instant at, Instant now) {
+  const Flight::Pace pace = pace_over(timed, rest.length_m(), at, task_->assignment.time);
+  run_out(rest, timed.speed_mps);
+  Flight& flight = ownship_.flight();
+  const double tail = flight.hold_curvature(rest.end(), ownship_.hazards());
+  return flight.continue_with(at, rest, tail, now, pace);
 }
 
 /// Straight on over the site: a turn away that begins on time is flown before it by who is late,
@@ -385,22 +391,19 @@ void TaskFlyer::run_out(Path& path, double speed_mps) const {
 
 /// Whom the wind has made late since it committed.
 void TaskFlyer::run_on(Instant now) {
-  Flight& flight = ownship_.flight();
+  if (task_->late > Duration{}) return;
+  const Flight& flight = ownship_.flight();
   const TimedPath& flown = flight.plan().timed;
   const double late_s = late_by_s(ownship_, flown.speed_mps);
-  if (late_s == 0.0 || task_->late > Duration{}) return;
+  if (late_s == 0.0) return;
   task_->late = from_seconds(late_s);
   const Instant at = now + flight.handover();
   const double begin_m = flown.distance_at(at);
   const bool runs_out = flown.path.length_m() > flown.on_time_m + kStraight_m;
   if (runs_out || begin_m >= flown.on_time_m) return;
-  auto rest = flown.piece(begin_m, flown.path.length_m());
-  if (!rest) return;
-  const double to_site_m = rest->length_m();
-  run_out(*rest, flown.speed_mps);
-  const double tail = flight.hold_curvature(rest->end(), ownship_.hazards());
-  flight.continue_with(at, *rest, tail, now,
-                       pace_over(flown, to_site_m, at, task_->assignment.time));
+  if (auto rest = flown.piece(begin_m, flown.path.length_m())) {
+    fly_run(*std::move(rest), flown, at, now);
+  }
 }
 
 void TaskFlyer::begin(Instant now) {

@@ -88,6 +88,7 @@ class TaskFlyer {
   void keep_time(Instant now);
   void commit_delivery(Instant now);
   void run_out(Path& path, double speed_mps) const;
+  bool fly_run(Path rest, const TimedPath& timed, Instant at, Instant now);
   void run_on(Instant now);
   void begin(Instant now);
   void end(Instant now);

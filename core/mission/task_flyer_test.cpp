@@ -48,6 +48,16 @@ struct Flying : PartsBench {
     hear(coalition::Message{award});
   }
   void grant() { flyer.on_authorisation({kRound, {1}, true, "", {}}, now); }
+  /// At 60 s.
+  void may_deliver() {
+    call();
+    award(60.0, 120.0);
+    grant();
+  }
+  [[nodiscard]] bool leads_north(double seconds) const {
+    const double heading_rad = ownship.flight().pose_at(at_seconds(seconds)).heading_rad;
+    return std::abs(wrap_pi(heading_rad - kPi / 2.0)) < 1e-6;
+  }
   void decide(bool granted, double decided_s) {
     flyer.on_authorisation({kRound, {1}, granted, "ada", at_seconds(decided_s)}, now);
   }
@@ -97,9 +107,7 @@ TEST(TaskFlyer, OfAWithdrawnSiteOnlyABegunDeliveryIsFlownToItsEnd) {
   for (const bool told : {true, false}) {  // by the operator, or by the leader's cancel alone
     for (const bool begun : {false, true}) {
       Flying f;
-      f.call();
-      f.award(60.0, 120.0);
-      f.grant();
+      f.may_deliver();
       f.fly_until(begun ? 58.5 : 50.0);
       ASSERT_EQ(f.reported(EventKind::task_started), begun ? 1 : 0);
       if (told) f.flyer.leave_site({1}, Reason::site_withdrawn, f.now);
@@ -274,18 +282,12 @@ TEST(TaskFlyer, DeliversWithAGrantUnderItsLease) {
 TEST(TaskFlyer, WhoIsLateTurnsAwayOnlyBeyondTheSite) {
   for (const double late_m : {0.0, 12.0}) {
     Flying f;
-    f.call();
-    f.award(60.0, 120.0);
-    f.grant();
+    f.may_deliver();
     f.beside_m = {0.0, -late_m};  // which is behind where it flies to the north
     f.fly_until(59.0);
     ASSERT_TRUE(f.flyer.in_run());
-    const auto heading_rad = [&](double s) {
-      return f.ownship.flight().pose_at(at_seconds(s)).heading_rad;
-    };
-    EXPECT_NEAR(heading_rad(60.0), kPi / 2.0, 1e-6);
-    const bool is_straight = std::abs(wrap_pi(heading_rad(60.9) - kPi / 2.0)) < 1e-6;
-    EXPECT_EQ(is_straight, late_m > 0.0);
+    EXPECT_TRUE(f.leads_north(60.0));
+    EXPECT_EQ(f.leads_north(60.9), late_m > 0.0);
     f.fly_until(62.0);
     EXPECT_EQ(f.reported(EventKind::task_done), 1);
   }
@@ -295,15 +297,12 @@ TEST(TaskFlyer, WhoIsLateTurnsAwayOnlyBeyondTheSite) {
 TEST(TaskFlyer, WhomTheWindMakesLateInItsRunIsDoneWhenItHasPassedTheSite) {
   for (const double late_m : {0.0, 12.0}) {
     Flying f;
-    f.call();
-    f.award(60.0, 120.0);
-    f.grant();
+    f.may_deliver();
     f.fly_until(58.0);
     ASSERT_TRUE(f.flyer.in_run());
     f.beside_m = {0.0, -late_m};
     f.fly_until(59.9);
-    const double heading_rad = f.ownship.flight().pose_at(at_seconds(60.9)).heading_rad;
-    EXPECT_EQ(std::abs(wrap_pi(heading_rad - kPi / 2.0)) < 1e-6, late_m > 0.0);
+    EXPECT_EQ(f.leads_north(60.9), late_m > 0.0);
     f.fly_until(60.0 + late_m / kTestSpeed_mps - 0.05);
     EXPECT_EQ(f.reported(EventKind::task_done), 0);
     f.fly_until(60.0 + late_m / kTestSpeed_mps + 0.2);
@@ -366,9 +365,7 @@ TEST(TaskFlyer, AGrantIsOfItsVehicleTimeAndBearingUntilItsEnd) {
 TEST(TaskFlyer, HoldsAtTheGateWhereAHazardHasAppearedBeyondIt) {
   for (const bool covered : {false, true}) {
     Flying f;
-    f.call();
-    f.award(60.0, 120.0);
-    f.grant();
+    f.may_deliver();
     f.fly_until(50.0);
     EXPECT_TRUE(f.flyer.run_is_open());
     ASSERT_EQ(covered && f.ownship.on_hazard({{HazardId{7}, test_site(1).position, 20.0}}),
@@ -381,9 +378,7 @@ TEST(TaskFlyer, HoldsAtTheGateWhereAHazardHasAppearedBeyondIt) {
 
 TEST(TaskFlyer, HoldsAtTheGateWhereAFenceThatWasOrderedLeavesTheSiteOut) {
   Flying f;
-  f.call();
-  f.award(60.0, 120.0);
-  f.grant();
+  f.may_deliver();
   f.fly_until(50.0);
   const Vec2 site = test_site(1).position;
   const Fence wide{{{-3e3, -3e3}, {3e3, -3e3}, {3e3, 3e3}, {-3e3, 3e3}}};

@@ -183,7 +183,7 @@ void VehicleAgent::Impl::on_site(const SiteReport& message, Instant now) {
 void VehicleAgent::Impl::idle(Instant now) {
   if (failsafe_.holds_still() || flyer_.flying() || scout_.flying()) return;
   if (ownship_.flight().en_route(now)) return;
-  if (ownship_.flight().orbit_barred() && !ownship_.keeps_clear(now)) ownship_.hold(now);
+  if (ownship_.flight().poll_orbit_barred() && !ownship_.keeps_clear(now)) ownship_.hold(now);
   if (!flyer_.free()) return;
   if (failsafe_.in(Failsafe::Action::come_home)) {
     if (ownship_.comes_home()) ownship_.come_home(now);

@@ -89,10 +89,9 @@ Mover mover_at(const VehicleState& state, const VehicleSpec& vehicle) {
 constexpr double kStep_s = 0.01;      ///< 0.5 m for the fastest vehicles
 constexpr double kLongest_s = 300.0;  ///< a turn in a wind that it makes no way against
 
-/// Could the vehicle stay outside from the track's `first` point on, in the wind that there was
-/// then? The most that it can do is the tightest turn to one side, until it comes no nearer, and
-/// straight on: no other path passes farther off. So it cannot exactly when both turns lead into
-/// the hazard.
+/// Could the vehicle stay outside from the first point on, in the wind that there was from then on?
+/// The most that it can do is the tightest turn to one side, until it comes no nearer, and straight
+/// on: no other path passes farther off. So it cannot exactly when both turns lead into the hazard.
 bool could_stay_outside(std::span<const recording::TrackPoint> track, const VehicleSpec& vehicle,
                         const Hazard& hazard) {
   const auto misses = [&](double side) {

@@ -110,7 +110,7 @@ TEST(HazardChecks, ATailwindTakesRoomToTurnAndAHeadwindLeavesNoMore) {
 }
 
 TEST(HazardChecks, TheWindIsWhatItWasLater) {
-  // A wind from the side that begins after its last turn takes it clear, or in.
+  // From the side, it takes it clear after its last turn in a calm.
   RunRecord record = record_with_hazard(kLastTurn_s - kReaction_s + 0.1);
   for (auto& point : of(record, kFromSouth).track) {
     if (point.state.time < at_seconds(kLastTurn_s + 0.2)) continue;
@@ -118,6 +118,7 @@ TEST(HazardChecks, TheWindIsWhatItWasLater) {
     point.state.groundspeed_mps = 50.0;
   }
   EXPECT_THAT(check_hazards(record, {}).excused, IsEmpty());
+  EXPECT_FALSE(check_hazards(record, {}).held());
 }
 
 TEST(HazardChecks, WhoIsInsideAtFirstMayLeaveButOnlyByTheShortestWay) {

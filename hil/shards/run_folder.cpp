@@ -114,6 +114,13 @@ Result<void> keep_text(const std::filesystem::path& file, const std::string& tex
   return has_changed(file, what);
 }
 
+std::string options_of(const Series& series) {
+  std::string options;
+  if (series.faults != "none") options += " --faults " + series.faults;
+  if (!series.plan.empty()) options += " --routes " + series.plan;
+  return options;
+}
+
 Result<void> same_series(const Series& series, const std::string& here, const Series& other,
                          const std::string& there) {
   const auto same = [&](std::string_view what, const std::string& one,

@@ -77,9 +77,7 @@ std::string command_of(const MergeArguments& arguments, const shards::Series& wh
   std::string text = fmt::format("{} {} {} --runs {}", arguments.program,
                                  is_sweep(whole) ? "sweep" : "simulate", whole.file, whole.runs);
   if (!is_sweep(whole)) text += fmt::format(" --seed {}", whole.first_seed);
-  if (whole.faults != "none") text += " --faults " + whole.faults;
-  if (!whole.plan.empty()) text += " --routes " + whole.plan;
-  return text +
+  return text + shards::options_of(whole) +
          fmt::format(" --shard {} --out {}", shards::to_string(shard), folder_of(shard, parts));
 }
 

@@ -60,7 +60,7 @@ verify() {
   local name failed=0
   (($#)) || set -- "${order[@]}"
   for name in "$@"; do
-    [[ -v configurations[$name] ]] || { echo "model: there is no configuration '$name'; there are ${order[*]} two-leaders" >&2; exit 2; }
+    [[ -v configurations[$name] ]] || { echo "model: there is no configuration '$name'; there are ${!configurations[*]}" >&2; exit 2; }
     # Options are words on purpose.
     # shellcheck disable=SC2086
     search "$name" ${configurations[$name]}

@@ -48,11 +48,8 @@ Summary::Summary(shards::Series series, std::string program)
       formation_{series_.kind == kFormation} {}
 
 std::string Summary::again(const RunRow& row) const {
-  std::string options;
-  if (series_.faults != "none") options += " --faults " + series_.faults;
-  if (!series_.plan.empty()) options += " --routes " + series_.plan;
   return fmt::format("  again: {} simulate {} --seed {}{} --trace\n", program_, series_.file,
-                     row.seed, options);
+                     row.seed, shards::options_of(series_));
 }
 
 void Summary::add(const RunRow& row) {

@@ -25,6 +25,9 @@ struct Series {
   double separation_m = 0.0;  ///< that a formation wants
 };
 
+/// What its runs are flown with besides, for a command line: " --faults mixed --routes plan.yaml".
+[[nodiscard]] std::string options_of(const Series& series);
+
 /// Whether two are of one experiment; names of files, runs and shard may differ. Fails with what
 /// differs; `here` and `there` are where they were read.
 [[nodiscard]] Result<void> same_series(const Series& series, const std::string& here,
