@@ -7,7 +7,7 @@
 #   not named is not on the include path. LIBRARIES are packages. IDL names the files of
 #   idl/ whose types are this module's, as skein/idl/FILE.hpp. TESTS (x_test.cpp beside the code)
 #   become one test program NAME_test; TEST_DEPS are what only the tests use. COLD: it waits for people
-#   and files and computes little, so it is compiled with -O1, in two thirds of the time.
+#   and files and computes little, so it is compiled with -O1, in two thirds of the time; so are tests.
 #
 # skein_program(NAME COMMAND_LINE ... [SOURCES ...] DEPS ... [LIBRARIES ...])
 #   An executable; the top of the graph. Nothing can depend on it. COMMAND_LINE are the sources that
@@ -16,6 +16,10 @@
 #   (add_dependencies(programs ...)).
 
 add_custom_target(programs)
+
+# `./dev test` counts halves of a core: a test that flies in real time mostly waits and takes one of them,
+# as is CTest's default; one that computes says PROCESSORS ${SKEIN_WHOLE_CORE}.
+set(SKEIN_WHOLE_CORE 2)
 
 function(_skein_check_layers target layer)
   foreach(dep IN LISTS ARGN)
@@ -44,7 +48,8 @@ function(_skein_tests name)
   endif()
   list(TRANSFORM T_DEPS PREPEND "skein::")
   add_executable(${name}_test ${T_SOURCES})
-  target_link_libraries(${name}_test PRIVATE ${T_DEPS} GTest::gtest GTest::gmock GTest::gtest_main skein_warnings)
+  target_link_libraries(${name}_test PRIVATE ${T_DEPS} GTest::gtest GTest::gmock GTest::gtest_main
+    skein_warnings skein_cold)
   target_compile_definitions(${name}_test PRIVATE SKEIN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
   _skein_precompiled(${name}_test test)
   add_test(NAME ${name} COMMAND ${name}_test)
@@ -52,7 +57,7 @@ function(_skein_tests name)
   if(SKEIN_SANITIZE OR CMAKE_CROSSCOMPILING)
     set(seconds 1800)  # Eigen is slow without optimisation and under QEMU, slower yet on a busy machine
   endif()
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${seconds})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${seconds} PROCESSORS ${SKEIN_WHOLE_CORE})
 endfunction()
 
 function(skein_module name)

@@ -26,7 +26,7 @@ target_compile_options(skein_warnings INTERFACE
   # False alarms on sums of strings in GCC 12 (its bug 105651). Clang, which lints and fuzzes, has them.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-array-bounds -Wno-stringop-overflow>)
 
-# Of modules that are COLD (SkeinModule.cmake); sanitized and debug builds have their own levels.
+# Of tests, and of modules that are COLD (SkeinModule.cmake); sanitized and debug builds have their own levels.
 add_library(skein_cold INTERFACE)
 target_compile_options(skein_cold INTERFACE $<$<CONFIG:Release>:-O1>)
 
@@ -89,7 +89,7 @@ if(SKEIN_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
     add_library(${target} OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
     target_link_libraries(${target} PRIVATE Eigen3::Eigen skein_warnings)
     target_precompile_headers(${target} PRIVATE ${precompiled_${kind}})
-    if(kind MATCHES "^cold")
+    if(kind MATCHES "^cold|^test$")
       target_link_libraries(${target} PRIVATE skein_cold)
     endif()
     if(kind MATCHES "_mission$")
