@@ -129,7 +129,7 @@ std::string tasks_text(const PlannedTasks& planned) {
   for (const CoupledTask& task : plan.tasks) {
     const auto& vehicle =
         *std::ranges::find(planned.problem.vehicles, task.vehicle, &planning::CoupledVehicle::id);
-    const double waits_s = (task.transit_m - task.least_transit_m) / vehicle.speed_mps;
+    const double waits_s = std::max(0.0, task.transit_m - task.least_transit_m) / vehicle.speed_mps;
     text += fmt::format("{:>7}   {:<20}  {:>8.1f}  {:>8.1f}  {:>8.1f}\n", task.vehicle.value,
                         to_string(task.task), task.time_s, task.end_s, waits_s);
   }

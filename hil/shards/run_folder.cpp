@@ -79,6 +79,17 @@ Result<int> lock(const std::filesystem::path& folder) {
   return descriptor;
 }
 
+/// The whole may take up the folder of a shard, and a shard that of the whole.
+Result<void> same_shard(const Shard& shard, const Shard& before,
+                        const std::filesystem::path& folder) {
+  if (shard.whole() || before.whole()) return {};
+  if (shard.number == before.number && shard.count == before.count) return {};
+  return Error{
+      fmt::format("{}: its runs are of shard {}, and this command's of {}; name a folder for "
+                  "each with --out",
+                  folder.string(), to_string(before), to_string(shard))};
+}
+
 }  // namespace
 
 std::string text_of(const std::filesystem::path& file) {
@@ -168,6 +179,7 @@ Result<RunFolder> RunFolder::open(const std::filesystem::path& folder, const Ser
     if (!before) return before.error();
     if (auto same = same_series(series, "this command", *before, folder.string()); !same)
       return same.error();
+    if (auto same = same_shard(series.shard, before->shard, folder); !same) return same.error();
   }
   if (auto put = put_text(folder / kFile, written(series)); !put) return put.error();
   return opened;

@@ -63,7 +63,11 @@ TEST_F(RunFolders, AreOneExperiments) {
     const auto opened = RunFolder::open(root_ / "a", other);
     return opened ? std::string{"taken"} : opened.error().message;
   };
+  EXPECT_TRUE(RunFolder::open(root_ / "a", series_));  // and its shard again
   auto other = series_;
+  other.shard = {3, 17};
+  EXPECT_THAT(refused(other), HasSubstr("of shard 3/16, and this command's of 3/17"));
+  other = series_;
   other.program = "0.2.0+g2";
   EXPECT_THAT(refused(other), HasSubstr("of the program 0.2.0+g1, and those of this command of"));
   other = series_;

@@ -66,7 +66,8 @@ std::string folder_of(const shards::Shard& shard, const std::vector<Part>& parts
       return part.folder.string();
   }
   const Part& first = parts.front();
-  if (first.folder.filename() == std::to_string(first.series.shard.number))
+  if (first.folder.filename() == std::to_string(first.series.shard.number) &&
+      first.series.shard.count == shard.count)
     return (first.folder.parent_path() / std::to_string(shard.number)).string();
   return "FOLDER";
 }
@@ -127,6 +128,10 @@ int merge_series(const MergeArguments& arguments, const std::vector<Part>& parts
   auto table =
       series::SeriesTable::open(arguments.out, whole, series::scenario_of(parts.front().folder));
   if (!table) return complain(table.error());
+  if (const std::size_t before = table->size() - table->others(); before > 0) {
+    fmt::print(stderr, "{} runs were in {} before, and are counted\n", before,
+               arguments.out.string());
+  }
   for (const Part& part : parts) {
     if (const auto taken = table->take_over(part.folder); !taken) return complain(taken.error());
   }

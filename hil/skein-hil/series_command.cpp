@@ -83,6 +83,10 @@ int fly_into(const SimulateArguments& arguments, const shards::Series& series,
       each_parallel<RunRow>(seeds.size(), jobs_of(arguments.jobs), fly, take, asked_to_stop);
   line.clear();
   if (!done) return complain(done.error());
+  if (const std::size_t others = table->others(); others > 0) {
+    fmt::print(stderr, "{} holds {} runs more than are asked for; they are not counted\n",
+               arguments.folder.string(), others);
+  }
   if (const auto sorted = table->sort(); !sorted) return complain(sorted.error());
   fmt::print(stderr, "{} runs flown now\n", flown);
   if (flown < seeds.size()) {

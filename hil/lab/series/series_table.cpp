@@ -64,6 +64,13 @@ std::vector<std::uint64_t> SeriesTable::missing() const {
   return seeds;
 }
 
+std::size_t SeriesTable::others() const {
+  std::size_t own = 0;
+  for (std::uint64_t draw = 0; draw < series_.runs; ++draw)
+    own += series_.shard.has(draw) && rows_.has({series_.first_seed + draw, 0}) ? 1 : 0;
+  return rows_.size() - own;
+}
+
 Result<void> SeriesTable::append(const RunRow& row) {
   return rows_.append({row.seed, 0}, row_fields(row, series_.kind == kFormation));
 }

@@ -70,9 +70,13 @@ TEST_F(SeriesTables, KnowWhatIsMissingOfTheirShard) {
 TEST_F(SeriesTables, SumUpTheRunsThatAreAskedFor) {
   auto table = open("a");
   for (const std::uint64_t seed : {6U, 5U, 7U, 8U}) fly(*table, seed, static_cast<double>(seed));
+  EXPECT_EQ(table->others(), 0U);
   series_.runs = 3;
   table = Error{"closed"};
-  const auto summary = open("a")->summary("hil");
+  table = open("a");
+  EXPECT_EQ(table->size(), 4U);
+  EXPECT_EQ(table->others(), 1U);
+  const auto summary = table->summary("hil");
   ASSERT_TRUE(summary);
   EXPECT_THAT(summary->text(), HasSubstr("runs       3, seeds 5 to 7\n"));
   EXPECT_THAT(summary->text(), HasSubstr("5.0 s at least, 6.0 s on average, 7.0 s at most"));
