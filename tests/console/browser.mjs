@@ -6,7 +6,8 @@ import { join } from "node:path";
 
 import { chromium } from "playwright-core";
 
-/** SKEIN_JS_FLAGS is what V8 is told. A page that notes what it asks of others and what it complains about. */
+/** SKEIN_JS_FLAGS is what V8 is told. Without a graphics processor every frame of a moving map costs: `reducedMotion`
+ * leaves out those between states. A page that notes what it asks of others and what it complains about. */
 export async function browse(url, options = {}) {
   const browser = await chromium.launch({
     executablePath: process.env.SKEIN_CHROMIUM ?? "/usr/bin/chromium",
@@ -22,7 +23,7 @@ export async function browse(url, options = {}) {
       ...(process.env.SKEIN_JS_FLAGS ? [`--js-flags=${process.env.SKEIN_JS_FLAGS}`] : []),
     ],
   });
-  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ignoreHTTPSErrors: true, ...options });
+  const page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ignoreHTTPSErrors: true, reducedMotion: "reduce", ...options });
   const foreign = [];
   const complaints = [];
   page.on("request", (request) => {

@@ -46,7 +46,7 @@ const watch = ([epoch, pace]) => {
   requestAnimationFrame(frame);
 };
 
-const { browser, page } = await browse("about:blank");
+const { browser, page } = await browse("about:blank", { reducedMotion: "no-preference" });
 await page.addInitScript(watch, [Number(epoch_ms), pace]);
 await page.goto(url);
 if (process.argv[6]) await page.getByTestId(`tab-${process.argv[6]}`).click();

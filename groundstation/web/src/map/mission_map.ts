@@ -36,6 +36,8 @@ import { memberships, needs_frames, paint_vehicles, vehicle_near } from "./vehic
 import type { Membership } from "./vehicles_painter";
 
 const tracks_every_ms = 500;
+/** Who wants no motion sees vehicles where they were last told to be, not moving on from there. */
+const still = window.matchMedia("(prefers-reduced-motion: reduce)");
 
 /** New sites that the operator does not see, as the map was moved by hand before they came. */
 export const sites_outside = signal<readonly NewSite[]>([]);
@@ -271,7 +273,7 @@ export class MissionMap {
 
   private between_states(): void {
     this.frame = 0;
-    if (since_state_s() <= 0 || !needs_frames(this.picture, 2 ** this.leaflet.getZoom())) return;
+    if (still.matches || since_state_s() <= 0 || !needs_frames(this.picture, 2 ** this.leaflet.getZoom())) return;
     this.moving.redraw();
     this.frame = requestAnimationFrame(() => this.between_states());
   }
