@@ -108,6 +108,29 @@ test("states are told apart in words, and UTC stands beside mission time", async
   assert.match(await view.part("count-heard").innerText(), /2\/2/);
 });
 
+test("vehicles on the map move on between states, unless less motion is asked for", async () => {
+  const paintings = async (reducedMotion) => {
+    await view.page.emulateMedia({ reducedMotion });
+    state({ vehicles: [vehicle(1), vehicle(2)] });
+    return view.page.evaluate(() => new Promise((done) => {
+      const { prototype } = CanvasRenderingContext2D;
+      const { clearRect } = prototype;
+      let paintings = 0;
+      prototype.clearRect = function (...where) {
+        paintings += 1;
+        clearRect.apply(this, where);
+      };
+      setTimeout(() => {
+        prototype.clearRect = clearRect;
+        done(paintings);
+      }, 800);
+    }));
+  };
+  const moving = await paintings("no-preference");
+  const still = await paintings("reduce");
+  assert.ok(moving > 2 * still + 2, `${moving} times in 0.8 s, ${still} with less motion`);
+});
+
 test("what the operator refuses is not drawn with a vehicle any more", async () => {
   state({
     vehicles: [vehicle(1), vehicle(2)],
