@@ -128,10 +128,6 @@ int merge_series(const MergeArguments& arguments, const std::vector<Part>& parts
   auto table =
       series::SeriesTable::open(arguments.out, whole, series::scenario_of(parts.front().folder));
   if (!table) return complain(table.error());
-  if (const std::size_t before = table->size() - table->others(); before > 0) {
-    fmt::print(stderr, "{} runs were in {} before, and are counted\n", before,
-               arguments.out.string());
-  }
   for (const Part& part : parts) {
     if (const auto taken = table->take_over(part.folder); !taken) return complain(taken.error());
   }

@@ -34,9 +34,7 @@ class SeriesTable {
 
   /// The seeds of the series, or of its shard, of which there is no row.
   [[nodiscard]] std::vector<std::uint64_t> missing() const;
-  /// How many runs are here.
-  [[nodiscard]] std::size_t size() const { return rows_.size(); }
-  /// How many of these are none of the series, or of its shard.
+  /// How many runs are here that are none of the series, or of its shard.
   [[nodiscard]] std::size_t others() const;
   /// Precondition: none of this seed is there.
   [[nodiscard]] Result<void> append(const RunRow& row);
