@@ -82,8 +82,7 @@ Result<int> lock(const std::filesystem::path& folder) {
 /// The whole may take up the folder of a shard, and a shard that of the whole.
 Result<void> same_shard(const Shard& shard, const Shard& before,
                         const std::filesystem::path& folder) {
-  if (shard.whole() || before.whole()) return {};
-  if (shard.number == before.number && shard.count == before.count) return {};
+  if (shard.whole() || before.whole() || shard == before) return {};
   return Error{
       fmt::format("{}: its runs are of shard {}, and this command's of {}; name a folder for "
                   "each with --out",

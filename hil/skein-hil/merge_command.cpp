@@ -62,8 +62,7 @@ shards::Series whole_of(const std::vector<Part>& parts) {
 /// That the shard has, or would have where folders are named by their shards' numbers.
 std::string folder_of(const shards::Shard& shard, const std::vector<Part>& parts) {
   for (const Part& part : parts) {
-    if (part.series.shard.number == shard.number && part.series.shard.count == shard.count)
-      return part.folder.string();
+    if (part.series.shard == shard) return part.folder.string();
   }
   const Part& first = parts.front();
   if (first.folder.filename() == std::to_string(first.series.shard.number) &&

@@ -55,20 +55,21 @@ Result<SeriesTable> SeriesTable::open(const std::filesystem::path& folder,
   return SeriesTable{std::move(*opened), std::move(*rows), series};
 }
 
-std::vector<std::uint64_t> SeriesTable::missing() const {
+std::vector<std::uint64_t> SeriesTable::seeds() const {
   std::vector<std::uint64_t> seeds;
-  for (std::uint64_t draw = 0; draw < series_.runs; ++draw) {
-    const std::uint64_t seed = series_.first_seed + draw;
-    if (series_.shard.has(draw) && !rows_.has({seed, 0})) seeds.push_back(seed);
-  }
+  for (std::uint64_t draw = 0; draw < series_.runs; ++draw)
+    if (series_.shard.has(draw)) seeds.push_back(series_.first_seed + draw);
   return seeds;
 }
 
+std::vector<std::uint64_t> SeriesTable::missing() const {
+  std::vector<std::uint64_t> missing = seeds();
+  std::erase_if(missing, [this](std::uint64_t seed) { return rows_.has({seed, 0}); });
+  return missing;
+}
+
 std::size_t SeriesTable::others() const {
-  std::size_t own = 0;
-  for (std::uint64_t draw = 0; draw < series_.runs; ++draw)
-    own += series_.shard.has(draw) && rows_.has({series_.first_seed + draw, 0}) ? 1 : 0;
-  return rows_.size() - own;
+  return rows_.size() - (seeds().size() - missing().size());
 }
 
 Result<void> SeriesTable::append(const RunRow& row) {

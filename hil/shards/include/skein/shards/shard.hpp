@@ -24,6 +24,7 @@ struct Shard {
     return static_cast<std::size_t>(draw % count) + 1;
   }
   [[nodiscard]] bool whole() const { return count == 1; }
+  bool operator==(const Shard&) const = default;
 };
 
 /// Of "3/16". Fails for what is no shard.

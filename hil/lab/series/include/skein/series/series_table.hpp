@@ -50,6 +50,9 @@ class SeriesTable {
   SeriesTable(shards::RunFolder folder, shards::RowFile rows, shards::Series series)
       : folder_{std::move(folder)}, rows_{std::move(rows)}, series_{std::move(series)} {}
 
+  /// Of the series, or of its shard.
+  [[nodiscard]] std::vector<std::uint64_t> seeds() const;
+
   shards::RunFolder folder_;
   shards::RowFile rows_;
   shards::Series series_;
