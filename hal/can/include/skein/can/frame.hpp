@@ -26,7 +26,9 @@ struct Frame {
   bool brs = false;       ///< FD: data at the second bit rate
   std::uint8_t size = 0;  ///< bytes of data; FD: one of 0..8, 12, 16, 20, 24, 32, 48, 64
   std::array<std::uint8_t, kFdDataMax> data{};
-  Duration timestamp{};  ///< since the Unix epoch, by the kernel, when received; 0: not known
+  /// Since the Unix epoch, by the kernel, when it arrived; just after a bus was opened it may be
+  /// when it was read. 0: not known.
+  Duration timestamp{};
 
   [[nodiscard]] std::span<const std::uint8_t> payload() const { return {data.data(), size}; }
 };
