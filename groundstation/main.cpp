@@ -22,6 +22,7 @@
 #include "mission_commands.hpp"
 #include "skein/base/stations.hpp"
 #include "skein/base/time.hpp"
+#include "skein/command_line/read.hpp"
 #include "skein/configuration/ground_config.hpp"
 #include "skein/configuration/scenario.hpp"
 #include "skein/console/users.hpp"
@@ -399,11 +400,7 @@ class CommandLine {
   }
 
   int run(int argc, char** argv) {
-    try {
-      app_.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app_.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
-    }
+    if (const auto ends = skein::command_line::read(app_, argc, argv)) return *ends;
     const auto given = app_.get_subcommands();
     return given.empty() ? ::run(arguments_) : actions_.at(given.front())();
   }
@@ -438,22 +435,25 @@ class CommandLine {
              "  skein-ground formation --config runs/mine/ground.yaml form heart\n"
              "  skein-ground formation places",
              [this](const auto& words) { return tell_formation(CLI::detail::join(words, " ")); });
-    add_tell("tell", "Gives a running ground station any line of its prompt",
-             "Examples:\n"
+    add_tell("tell",
+             "Gives a running ground station any line of its prompt: the words behind the options",
+             "`skein-ground tell help` lists what it knows. Examples:\n"
              "  skein-ground tell status\n"
              "  skein-ground tell --socket skein-ground-7400 hold all",
              [this](const auto& words) { return tell(arguments_, CLI::detail::join(words, " ")); });
-    add_tell("record", "Has a running ground station record into a folder from now on, or stop",
-             "Examples:\n"
-             "  skein-ground record runs/evening\n"
-             "  skein-ground record stop",
-             [this](const auto& words) {
-               // The ground station may have been started elsewhere.
-               const bool folder = words.size() == 1 && words[0] != "stop";
-               return tell(arguments_,
-                           "record " + (folder ? std::filesystem::absolute(words[0]).string()
-                                               : CLI::detail::join(words, " ")));
-             });
+    add_tell(
+        "record",
+        "Has a running ground station record into a folder, which is named behind the options, "
+        "or stop",
+        "Examples:\n"
+        "  skein-ground record runs/evening\n"
+        "  skein-ground record stop",
+        [this](const auto& words) {
+          // The ground station may have been started elsewhere.
+          const bool folder = words.size() == 1 && words[0] != "stop";
+          return tell(arguments_, "record " + (folder ? std::filesystem::absolute(words[0]).string()
+                                                      : CLI::detail::join(words, " ")));
+        });
   }
 
   void add_unlock() {
@@ -477,7 +477,13 @@ class CommandLine {
         "The password is asked for, or read from standard input.\n"
         "Example:\n"
         "  skein-ground unlock --operator ada");
-    add_one("lock", "Ends that: nobody signs there until a key is unlocked again", true);
+    add_one("lock",
+            "Locks the operator's key that unlock opened: nobody signs at the prompt and command "
+            "line until one is unlocked again",
+            true)
+        .footer(
+            "Example:\n"
+            "  skein-ground lock --config ground.yaml");
   }
 
   int tell_formation(const std::string& line) {
@@ -582,6 +588,9 @@ class CommandLine {
     CLI::App& group = add("audit", "Looks at the log of who gave which order, audit.jsonl",
                           [this] { return verify_audit(auditing_); });
     group.require_subcommand(1);
+    group.footer(
+        "Example:\n"
+        "  skein-ground audit verify /var/lib/skein/ground/audit.jsonl");
     CLI::App& verify = *group.add_subcommand(
         "verify", "Says whether a line was changed, left out or put in, and who signed");
     verify.add_option("file", auditing_.file, "audit.jsonl of a ground station's recording folder")

@@ -108,6 +108,9 @@ MissionCommands::MissionCommands(CLI::App& app) {
   add_revoke();
   keys_ = app.add_subcommand("keys", "Tells of the keys and members of a mission");
   keys_->require_subcommand(1);
+  keys_->footer(
+      "Example:\n"
+      "  skein-ground keys show --keys keys/ground");
   add_show();
   add_enrolment(app);
 }
@@ -237,6 +240,9 @@ void MissionCommands::add_show() {
   CLI::App& command =
       add(*keys_, "show", "Shows mission, members and what is wrong", [this] { return show(); });
   command.add_flag("--json", json_, "For programs");
+  command.footer(
+      "Example:\n"
+      "  skein-ground keys show --keys keys/ground --json");
 }
 
 int MissionCommands::create() const {

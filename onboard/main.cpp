@@ -10,6 +10,7 @@
 
 #include "check_command.hpp"
 #include "key_commands.hpp"
+#include "skein/command_line/read.hpp"
 #include "skein/configuration/vehicle_config.hpp"
 #include "skein/network/carrier_process.hpp"
 #include "skein/onboard/status.hpp"
@@ -151,11 +152,7 @@ int main(int argc, char** argv) {
                 "3 where there is no process, with 4 where it is not known");
   const onboard::KeyCommands keys{app};
   const onboard::CheckCommand check{app};
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
-  }
+  if (const auto ends = skein::command_line::read(app, argc, argv)) return *ends;
   if (keys.given()) return keys.run();
   if (check.given()) return check.run();
   return asks.parsed() ? show_status(status) : fly(arguments);

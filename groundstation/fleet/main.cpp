@@ -4,6 +4,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "skein/command_line/read.hpp"
 #include "skein/version/version.hpp"
 
 namespace skein::fleet {
@@ -35,6 +36,7 @@ class CommandLine {
     app_.set_version_flag("--version", "skein " + skein::version());
     app_.set_help_all_flag("--help-all", kHelpAll);
     app_.require_subcommand(1);
+    app_.footer("Example:\n  skein fleet check fleet.yaml");
     fleet_.require_subcommand(1);
     fleet_.footer(
         "Ends with status 0 if all is as the file says, 1 if something is not, 2 for bad input.\n"
@@ -58,14 +60,7 @@ class CommandLine {
         show_status, add_only);
   }
 
-  int run(int argc, char** argv) {
-    try {
-      app_.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app_.exit(error) == 0 ? kExitAsTheFile : kExitBadInput;
-    }
-    return status_;
-  }
+  int run(int argc, char** argv) { return command_line::read(app_, argc, argv).value_or(status_); }
 
  private:
   template <class... Adders>

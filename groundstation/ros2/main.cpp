@@ -4,6 +4,7 @@
 #include <fstream>
 #include <string>
 
+#include "skein/command_line/read.hpp"
 #include "skein/process/log.hpp"
 #include "skein/ros2/bridge.hpp"
 #include "skein/version/version.hpp"
@@ -101,11 +102,7 @@ int main(int argc, char** argv) {
   app.add_flag("--humble", arguments.humble,
                "Tells of its node as ROS 2 Humble does (newer ones do not understand that)");
   app.set_version_flag("--version", "skein-ros2 " + skein::version());
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : skein::process::kExitBadInput;
-  }
+  if (const auto ends = skein::command_line::read(app, argc, argv)) return *ends;
   const auto config = config_of(arguments);
   if (!config) return fail(config.error().message);
   return skein::ros2::run(*config);

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "skein/base/angles.hpp"
+#include "skein/command_line/read.hpp"
 #include "skein/mavlink/signing.hpp"
 #include "skein/version/version.hpp"
 
@@ -246,11 +247,7 @@ std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
   Texts texts;
   add_link_options(app, arguments, texts);
   add_flight_options(app, arguments, texts);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kExitBadInput;
-  }
+  if (const auto ends = command_line::read(app, argc, argv)) return *ends;
   EmulatorConfig& c = arguments.config;
   c.node_id = static_cast<std::uint8_t>(texts.node);
   c.companion_node = static_cast<std::uint8_t>(texts.companion);

@@ -11,6 +11,7 @@
 #include <system_error>
 
 #include "commands.hpp"
+#include "skein/command_line/read.hpp"
 #include "skein/hil/fault_profiles.hpp"
 #include "skein/hil/process_faults.hpp"
 #include "skein/shards/shard.hpp"
@@ -513,10 +514,5 @@ int main(int argc, char** argv) {
   skein::hil::add_orienteering(app, status);
   skein::hil::add_shapes(app, status);
   skein::hil::add_can(app, status);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : skein::hil::kExitBadInput;
-  }
-  return status;
+  return skein::command_line::read(app, argc, argv).value_or(status);
 }

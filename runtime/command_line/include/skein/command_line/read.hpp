@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+namespace skein::command_line {
+
+inline constexpr int kExitBadArguments = 2;
+
+/// What is wrong, in a line: a word in a command's place is named, where CLI11 says only that there
+/// is no command.
+inline std::string refusal(const CLI::App* app, const CLI::Error& error) {
+  const auto words = app->remaining(true);
+  const bool lacks = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError);
+  if (!lacks || words.empty()) return CLI::FailureMessage::simple(app, error);
+  return words.front() + ": there is no such command; --help lists those that there are\n";
+}
+
+/// Reads the program's arguments. If it is to end with that, its exit status: 0 after --help or
+/// --version, else kExitBadArguments, and what is wrong was told.
+inline std::optional<int> read(CLI::App& app, int argc, char** argv) {
+  app.failure_message(refusal);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kExitBadArguments;
+  }
+  return std::nullopt;
+}
+
+}  // namespace skein::command_line
