@@ -292,20 +292,22 @@ void Participant::task_started(const TaskId& task, Instant now) {
   send_status(now);
 }
 
-void Participant::task_done(const TaskId& task, Instant now) { finish(task, TaskState::done, now); }
-
-void Participant::task_failed(const TaskId& task, Instant now) {
-  finish(task, TaskState::failed, now);
+void Participant::task_done(const TaskId& task, Instant end, Instant now) {
+  finish(task, TaskState::done, end, now);
 }
 
-void Participant::finish(const TaskId& task, TaskState state, Instant now) {
+void Participant::task_failed(const TaskId& task, Instant now) {
+  finish(task, TaskState::failed, now, now);
+}
+
+void Participant::finish(const TaskId& task, TaskState state, Instant end, Instant now) {
   const auto lease =
       std::find_if(leases_.begin(), leases_.end(), [&](const Lease& l) { return l.task == task; });
   if (lease == leases_.end()) return;
   leases_.erase(lease);
   const Why why{state == TaskState::done ? Reason::task_done : Reason::task_failed};
   outputs_.push(LeaseEnded{round_, task, why, false});
-  finished_.push_back({round_, {task, state, now}, now + kReportFinishedFor});
+  finished_.push_back({round_, {task, state, end}, now + kReportFinishedFor});
   send_status(now);
   if (leases_.empty() && (machine_.in(State::member) || machine_.in(State::orphaned))) {
     leave(Event::released, why);
@@ -313,7 +315,7 @@ void Participant::finish(const TaskId& task, TaskState state, Instant now) {
 }
 
 void Participant::withdraw(Reason reason, Instant now) {
-  while (!leases_.empty()) finish(leases_.front().task, TaskState::failed, now);
+  while (!leases_.empty()) finish(leases_.front().task, TaskState::failed, now, now);
   if (!machine_.in(State::free)) leave(Event::released, {reason});
 }
 

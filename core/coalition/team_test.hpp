@@ -311,7 +311,7 @@ class Team {
         if (at < when || !m.participant.holds(task, at, at)) continue;
         if (begun_before > Duration{} && !m.begun.contains(task)) continue;
         ++flown[task];
-        m.participant.task_done(task, at);
+        m.participant.task_done(task, at, at);
       }
     }
   }

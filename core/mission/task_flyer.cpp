@@ -395,8 +395,11 @@ void TaskFlyer::run_on(Instant now) {
   const Flight& flight = ownship_.flight();
   const TimedPath& flown = flight.plan().timed;
   const double late_s = late_by_s(ownship_, flown.speed_mps);
-  if (late_s == 0.0) return;
-  task_->late = from_seconds(late_s);
+  const Duration late = from_seconds(late_s);
+  // What has begun is done under its lease, or at its time.
+  if (late_s == 0.0 || !participant_.holds(task_->assignment.task, now, task_->end_time() + late))
+    return;
+  task_->late = late;
   const Instant at = now + flight.handover();
   const double begin_m = flown.distance_at(at);
   const bool runs_out = flown.path.length_m() > flown.on_time_m + kStraight_m;
@@ -437,7 +440,7 @@ void TaskFlyer::end(Instant now) {
   const Instant planned = task.assignment.time;
   if (flown) {
     outbox_.report(event::TaskDone{planned}, task.round, id, task.end_time());
-    participant_.task_done(id, now);
+    participant_.task_done(id, task.end_time(), now);  // however late the wind made it
   } else {
     outbox_.report(event::TaskFailed{TaskFailure::off_path, planned}, task.round, id,
                    task.end_time());

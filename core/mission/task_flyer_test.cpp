@@ -58,6 +58,18 @@ struct Flying : PartsBench {
     const double heading_rad = ownship.flight().pose_at(at_seconds(seconds)).heading_rad;
     return std::abs(wrap_pi(heading_rad - kPi / 2.0)) < 1e-6;
   }
+  /// When its task ended, as others are told.
+  [[nodiscard]] std::optional<Instant> told_done_at() {
+    std::optional<Instant> at;
+    while (const auto said = flyer.poll_message()) {
+      const auto* status = std::get_if<coalition::MemberStatus>(&*said);
+      if (status == nullptr) continue;
+      for (const auto& entry : status->tasks) {
+        if (entry.state == coalition::TaskState::done) at = entry.time;
+      }
+    }
+    return at;
+  }
   void decide(bool granted, double decided_s) {
     flyer.on_authorisation({kRound, {1}, granted, "ada", at_seconds(decided_s)}, now);
   }
@@ -307,7 +319,20 @@ TEST(TaskFlyer, WhomTheWindMakesLateInItsRunIsDoneWhenItHasPassedTheSite) {
     EXPECT_EQ(f.reported(EventKind::task_done), 0);
     f.fly_until(60.0 + late_m / kTestSpeed_mps + 0.2);
     EXPECT_EQ(f.reported(EventKind::task_done), 1);
+    EXPECT_EQ(f.told_done_at(), at_seconds(60.0)) << "assessments count from when it was planned";
   }
+}
+
+TEST(TaskFlyer, WhomTheWindMakesLateIsDoneOnTimeWhereItsLeaseLastsNoLonger) {
+  Flying f;
+  f.call();
+  f.award(60.0, 60.2);
+  f.grant();
+  f.fly_until(58.0);
+  ASSERT_TRUE(f.flyer.in_run());
+  f.beside_m = {0.0, -12.0};
+  f.fly_until(60.1);
+  EXPECT_EQ(f.reported(EventKind::task_done), 1);
 }
 
 /// The way there, timed as its plan has it, takes no more of the airspeed in one wind than in

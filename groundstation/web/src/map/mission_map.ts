@@ -38,6 +38,7 @@ import type { Membership } from "./vehicles_painter";
 const tracks_every_ms = 500;
 /** Who wants no motion sees vehicles where they were last told to be, not moving on from there. */
 const still = window.matchMedia("(prefers-reduced-motion: reduce)");
+const ahead_s = () => (still.matches ? 0 : since_state_s());
 
 /** New sites that the operator does not see, as the map was moved by hand before they came. */
 export const sites_outside = signal<readonly NewSite[]>([]);
@@ -273,7 +274,7 @@ export class MissionMap {
 
   private between_states(): void {
     this.frame = 0;
-    if (still.matches || since_state_s() <= 0 || !needs_frames(this.picture, 2 ** this.leaflet.getZoom())) return;
+    if (ahead_s() <= 0 || !needs_frames(this.picture, 2 ** this.leaflet.getZoom())) return;
     this.moving.redraw();
     this.frame = requestAnimationFrame(() => this.between_states());
   }
@@ -382,12 +383,12 @@ export class MissionMap {
       selected: selected.value,
       selection: selection.value,
       labels: on.labels,
-      ahead_s: since_state_s(),
+      ahead_s: ahead_s(),
       members: this.members,
     });
     if (search_preview.value?.data) paint_search(view, search_preview.value.data, colour_of, true);
     paint_outline(view);
-    if (on.traffic) paint_traffic(view, picture.traffic, since_state_s());
+    if (on.traffic) paint_traffic(view, picture.traffic, ahead_s());
     paint_tools(view);
   }
 }

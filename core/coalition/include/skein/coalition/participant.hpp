@@ -107,9 +107,10 @@ class Participant {
   void accept(Instant now);
   void refuse(const Why& why, Instant now);
 
-  /// How the tasks go. A task that is done or failed is no longer held.
+  /// How the tasks go. A task that is done or failed is no longer held. `end` is told as its end:
+  /// what follows counts from there.
   void task_started(const TaskId& task, Instant now);
-  void task_done(const TaskId& task, Instant now);
+  void task_done(const TaskId& task, Instant end, Instant now);
   void task_failed(const TaskId& task, Instant now);
   /// Leaves the coalition: tasks that are not done are reported as failed.
   void withdraw(Reason reason, Instant now);
@@ -153,7 +154,7 @@ class Participant {
     TaskStatus entry;
     Instant report_until{};
   };
-  void finish(const TaskId& task, TaskState state, Instant now);
+  void finish(const TaskId& task, TaskState state, Instant end, Instant now);
   void end_leases(const Why& why, bool unstarted_only);
   void leave(Event event, const Why& why);
   void expire_leases(Instant now);

@@ -12,9 +12,11 @@ inline constexpr int kExitBadArguments = 2;
 /// What is wrong, in a line: a word in a command's place is named, where CLI11 says only that there
 /// is no command.
 inline std::string refusal(const CLI::App* app, const CLI::Error& error) {
+  const CLI::App* last = app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
   const auto words = app->remaining(true);
-  const bool lacks = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::RequiredError);
-  if (!lacks || words.empty()) return CLI::FailureMessage::simple(app, error);
+  const bool lacks = last->get_require_subcommand_min() > 0 && !words.empty();
+  if (!lacks || words.front().starts_with('-')) return CLI::FailureMessage::simple(app, error);
   return words.front() + ": there is no such command; --help lists those that there are\n";
 }
 
