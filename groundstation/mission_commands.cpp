@@ -240,9 +240,6 @@ void MissionCommands::add_show() {
   CLI::App& command =
       add(*keys_, "show", "Shows mission, members and what is wrong", [this] { return show(); });
   command.add_flag("--json", json_, "For programs");
-  command.footer(
-      "Example:\n"
-      "  skein-ground keys show --keys keys/ground --json");
 }
 
 int MissionCommands::create() const {

@@ -17,8 +17,6 @@
 namespace skein::hil {
 namespace {
 
-constexpr int kExitBadInput = 2;
-
 constexpr const char* kDescription =
     "A flight controller as its own process on a CAN bus, with the aircraft that it flies: speaks\n"
     "DroneCAN and MAVLink 2 as ArduPilot 4.6 (Plane, Copter) does through a DroneCAN serial port, "
@@ -262,13 +260,13 @@ std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
   c.height_m = texts.start[2];
   c.wind_mps = -texts.wind_mps * unit_vector(heading_from_compass_deg(texts.wind_from_deg));
   c.noise = !texts.no_noise;
-  if (!read_signing_key(texts.signing_key, c)) return kExitBadInput;
+  if (!read_signing_key(texts.signing_key, c)) return command_line::kExitBadArguments;
   for (const std::string& text : texts.at) {
     const auto line = timed_line(text);
     if (!line) {
       std::fprintf(stderr, "skein-fc: --at '%s': it is 'SECONDS LINE', such as '30 mode RTL'\n",
                    text.c_str());
-      return kExitBadInput;
+      return command_line::kExitBadArguments;
     }
     arguments.script.push_back(*line);
   }
@@ -276,7 +274,7 @@ std::variant<FcArguments, int> parse_arguments(int argc, char** argv) {
                    [](const TimedLine& a, const TimedLine& b) { return a.after < b.after; });
   if (const auto good = check(c); !good) {
     std::fprintf(stderr, "skein-fc: %s\n", good.error().message.c_str());
-    return kExitBadInput;
+    return command_line::kExitBadArguments;
   }
   return arguments;
 }
