@@ -11,32 +11,44 @@
 
 namespace skein::hil::radio {
 
-Result<LinkTable> LinkTable::create() {
-  static std::atomic<unsigned> number{0};
-  return map("/skein-radio-" + std::to_string(::getpid()) + "-" + std::to_string(++number), true);
+namespace {
+
+Error error_of(const std::string& name, int reason) {
+  return Error{"radio table " + name + ": " + std::generic_category().message(reason)};
 }
 
-Result<LinkTable> LinkTable::open(const std::string& name) { return map(name, false); }
+}  // namespace
 
-Result<LinkTable> LinkTable::map(const std::string& name, bool create) {
-  const int flags = create ? O_CREAT | O_EXCL | O_RDWR : O_RDWR;
-  const int descriptor = ::shm_open(name.c_str(), flags, 0600);
-  if (descriptor < 0) {
-    return Error{"radio table " + name + ": " + std::generic_category().message(errno) +
-                 (create ? "" : "; it is made by skein-hil, which must be running")};
+Result<LinkTable> LinkTable::create() {
+  static std::atomic<unsigned> number{0};
+  for (;;) {
+    auto name = "/skein-radio-" + std::to_string(::getpid()) + "-" + std::to_string(++number);
+    const int descriptor = ::shm_open(name.c_str(), O_CREAT | O_EXCL | O_RDWR, 0600);
+    if (descriptor >= 0) return map(std::move(name), descriptor, true);
+    // Taken by one that was killed, or whose process has our number in another namespace.
+    if (errno != EEXIST) return error_of(name, errno);
   }
-  const bool sized = !create || ::ftruncate(descriptor, sizeof(Table)) == 0;
+}
+
+Result<LinkTable> LinkTable::open(const std::string& name) {
+  const int descriptor = ::shm_open(name.c_str(), O_RDWR, 0);
+  if (descriptor >= 0) return map(name, descriptor, false);
+  return Error{error_of(name, errno).message + "; it is made by skein-hil, which must be running"};
+}
+
+Result<LinkTable> LinkTable::map(std::string name, int descriptor, bool owner) {
+  const bool sized = !owner || ::ftruncate(descriptor, sizeof(Table)) == 0;
   void* memory =
       sized ? ::mmap(nullptr, sizeof(Table), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor, 0)
             : MAP_FAILED;
   const int reason = errno;
   ::close(descriptor);
   if (memory == MAP_FAILED) {
-    if (create) ::shm_unlink(name.c_str());
-    return Error{"radio table " + name + ": " + std::generic_category().message(reason)};
+    if (owner) ::shm_unlink(name.c_str());
+    return error_of(name, reason);
   }
-  LinkTable table{name, static_cast<Table*>(memory), create};
-  if (create) table.all_hear_all();
+  LinkTable table{std::move(name), static_cast<Table*>(memory), owner};
+  if (owner) table.all_hear_all();
   return table;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The radio between two true nodes of the mission network, on loopback.
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -60,6 +62,23 @@ void name_table(const std::string& name) {
     ASSERT_EQ(::setenv("SKEIN_RADIO_SEED", "7", 1), 0);
   }
   // NOLINTEND(concurrency-mt-unsafe)
+}
+
+TEST(LinkTableNames, OneThatIsTakenIsPassedOver) {
+  const auto numbered = [](const std::string& name, int step) {
+    const auto dash = name.rfind('-') + 1;
+    return name.substr(0, dash) + std::to_string(std::stoi(name.substr(dash)) + step);
+  };
+  const auto first = LinkTable::create();
+  ASSERT_TRUE(first) << first.error().message;
+  const auto taken = numbered(first.value().name(), 1);
+  const int left_behind = ::shm_open(taken.c_str(), O_CREAT | O_EXCL | O_RDWR, 0600);
+  ASSERT_GE(left_behind, 0);
+  const auto second = LinkTable::create();
+  EXPECT_EQ(::shm_unlink(taken.c_str()), 0);
+  ::close(left_behind);
+  ASSERT_TRUE(second) << second.error().message;
+  EXPECT_EQ(second.value().name(), numbered(first.value().name(), 2));
 }
 
 /// A radio knows whose datagram it carries in clear and sealed.

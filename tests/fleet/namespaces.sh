@@ -24,6 +24,8 @@ shift
 count=$1
 shift
 mount -t tmpfs none /run
+# Their pids are those of others outside, and so would be the names of shared memory.
+mount -t tmpfs none /dev/shm
 mkdir /run/netns
 ip link set lo up
 ip link add bridge type bridge

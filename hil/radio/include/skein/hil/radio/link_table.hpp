@@ -22,8 +22,8 @@ class LinkTable {
  public:
   static constexpr std::size_t kNodes = 1024;
 
-  /// Makes the table under a new name ("/skein-radio-PID-N"); all hear all, and perfectly. The
-  /// name goes with the object.
+  /// Makes the table under a name that nobody has ("/skein-radio-PID-N"); all hear all, and
+  /// perfectly. The name goes with the object.
   [[nodiscard]] static Result<LinkTable> create();
   /// A table of this process alone; all hear all, and perfectly.
   [[nodiscard]] static Result<LinkTable> create_private();
@@ -65,7 +65,7 @@ class LinkTable {
 
   LinkTable(std::string name, Table* table, bool owner)
       : name_{std::move(name)}, table_{table}, owner_{owner} {}
-  [[nodiscard]] static Result<LinkTable> map(const std::string& name, bool create);
+  [[nodiscard]] static Result<LinkTable> map(std::string name, int descriptor, bool owner);
   void all_hear_all();
 
   std::string name_;
