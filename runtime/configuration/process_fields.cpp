@@ -159,7 +159,8 @@ void landing_fields(FieldVisitor& v, LandingSpec& landing) {
 }
 
 void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
-  id(v, {"id", "number of the vehicle, its own in the fleet", kRequired}, spec.id);
+  id(v, {"id", "number of the vehicle, its own in the fleet; below 65001, and not 255", kRequired},
+     spec.id);
   v.require(spec.id != mission::kSensors, "id", "is of the sensors; give the vehicle another");
   v.require(!is_station(spec.id), "id", "is of a ground station; give the vehicle one below 65001");
   v.number({"cruise_speed_mps", "speed that paths are planned at", kRequired}, {1.0, 200.0, "m/s"},
