@@ -72,7 +72,7 @@ FieldFlight::FieldFlight(const Change& change, std::size_t self, const FieldPara
   self_.goal_m = own.points.back();
   self_.arrival_share = longest_m > 0.0 ? std::max(1e-3, way_m(own) / longest_m) : 1.0;
   neighbours_.reserve(others_.size());
-  decide();
+  plan_slot(wanted_velocity());
 }
 
 void FieldFlight::on_progress(std::size_t mover, const Progress& progress,
@@ -90,24 +90,22 @@ void FieldFlight::on_progress(std::size_t mover, const Progress& progress,
   other.heard = true;
 }
 
-void FieldFlight::decide() {
-  const Vec3 now_mps = self_.velocity_mps;
-  if (held_ || finished_ || slot_begin() < start_) {
-    next_velocity_mps_ = braked(now_mps, limits_);
-  } else if (const auto landing_mps = landing_velocity()) {
-    next_velocity_mps_ = *landing_mps;
-  } else {
-    const Vec3 way_m = self_.goal_m - self_.position_m;
-    neighbours_.clear();
-    for (const Other& other : others_) {
-      if (!other.heard || way_m.norm() <= kAlmost_m) continue;
-      neighbours_.push_back(other.last);
-      neighbours_.back().age_s = std::max(0.0, to_seconds(slot_begin() - other.at));
-    }
-    next_velocity_mps_ =
-        slow_enough(self_, field_velocity(params_, limits_, self_, neighbours_, kSlot_s), limits_);
+Vec3 FieldFlight::wanted_velocity() {
+  if (held_ || finished_ || slot_begin() < start_) return braked(self_.velocity_mps, limits_);
+  if (const auto landing_mps = landing_velocity()) return *landing_mps;
+  const Vec3 way_m = self_.goal_m - self_.position_m;
+  neighbours_.clear();
+  for (const Other& other : others_) {
+    if (!other.heard || way_m.norm() <= kAlmost_m) continue;
+    neighbours_.push_back(other.last);
+    neighbours_.back().age_s = std::max(0.0, to_seconds(slot_begin() - other.at));
   }
-  next_position_m_ = self_.position_m + 0.5 * kSlot_s * (now_mps + next_velocity_mps_);
+  return slow_enough(self_, field_velocity(params_, limits_, self_, neighbours_, kSlot_s), limits_);
+}
+
+void FieldFlight::plan_slot(const Vec3& next_velocity_mps) {
+  next_velocity_mps_ = next_velocity_mps;
+  next_position_m_ = self_.position_m + 0.5 * kSlot_s * (self_.velocity_mps + next_velocity_mps_);
   const bool lands =
       next_velocity_mps_.isZero(0.0) && (self_.goal_m - next_position_m_).norm() <= kLanded_m;
   if (lands) next_position_m_ = self_.goal_m;
@@ -134,13 +132,15 @@ void FieldFlight::step(Instant now) {
     self_.velocity_mps = next_velocity_mps_;
     finished_ = self_.position_m == self_.goal_m;
     ++slot_;
-    decide();
+    // In a slot that is over what was told last has braked.
+    plan_slot(slot_ == current ? wanted_velocity() : braked(self_.velocity_mps, limits_));
   }
 }
 
 Progress FieldFlight::progress() const { return {.change = number_, .at = slot_begin()}; }
 
 MotionTrack::Moment FieldFlight::reference(Instant now) const {
+  if (now > slot_begin() + kSlot) return track().at(now);
   const double t = std::clamp(to_seconds(now - slot_begin()), 0.0, kSlot_s);
   const Vec3 acceleration = (next_velocity_mps_ - self_.velocity_mps) / kSlot_s;
   return {self_.position_m + t * self_.velocity_mps + 0.5 * t * t * acceleration,

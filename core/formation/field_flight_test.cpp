@@ -94,6 +94,20 @@ TEST(FieldFlight, HoldsAndGoesOn) {
   EXPECT_TRUE(team.finished());
 }
 
+TEST(FieldFlight, WhoseProgramStandsStillGoesOnFromWhereItsTrackHasLed) {
+  Team team{change_of({{{0, 0, 10}, {30, 0, 10}}})};
+  for (int i = 0; i < 60; ++i) team.step();
+  FieldFlight& flight = team.vehicles[0];
+  const MotionTrack told = flight.track();
+  for (const double asleep_s : {0.1, 0.4, 3.0}) {
+    const Instant woken = team.now + from_seconds(asleep_s);
+    FieldFlight asleep = flight;
+    EXPECT_EQ(asleep.reference(woken).position_m, told.at(woken).position_m);
+    asleep.step(woken);
+    EXPECT_LT((asleep.reference(woken).position_m - told.at(woken).position_m).norm(), 1e-9);
+  }
+}
+
 TEST(FieldFlight, ComesToRestInItsPlaceWithinItsLimits) {
   for (const double acceleration_mps2 : {0.5, 2.0, 6.0}) {
     Change change = change_of({{{0, 0, 10}, {7.3, 1.1, 12}}});
@@ -140,8 +154,10 @@ TEST(FieldFlight, WaitsForItsStartAndIgnoresOtherChanges) {
   told.on_progress(1, {.change = 2, .at = at_seconds(4.9)}, {0, 1, 10});  // of another change
   told.on_progress(9, {.change = 3, .at = at_seconds(4.9)}, {0, 1, 10});  // of nobody
   told.on_progress(0, {.change = 3, .at = at_seconds(4.9)}, {0, 1, 10});  // of itself
-  flight.step(at_seconds(8.0));
-  told.step(at_seconds(8.0));
+  for (double s = 4.9; s < 8.01; s += to_seconds(kSlot)) {
+    flight.step(at_seconds(s));
+    told.step(at_seconds(s));
+  }
   EXPECT_EQ(told.reference(at_seconds(8.0)).position_m,
             flight.reference(at_seconds(8.0)).position_m);
   EXPECT_GT(flight.reference(at_seconds(8.0)).position_m.x(), 1.0);

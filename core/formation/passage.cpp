@@ -174,29 +174,30 @@ void Passage::look_for_silence() {
   }
 }
 
-bool Passage::clear_of_columns(const Future& future) const {
+std::optional<std::size_t> Passage::in_column_of(const Future& future) const {
   for (std::int64_t slot = 0; slot < future.stops_after(); ++slot) {
-    if (!clear_of_columns(std::min(end_, future.at(slot)), std::min(end_, future.at(slot + 1)))) {
-      return false;
-    }
+    const auto mover =
+        in_column_of(std::min(end_, future.at(slot)), std::min(end_, future.at(slot + 1)));
+    if (mover) return mover;
   }
-  return true;
+  return std::nullopt;
 }
 
-bool Passage::clear_of_columns(Grains own_from, Grains own_to) const {
-  return std::all_of(silent_.begin(), silent_.end(), [&](std::uint32_t mover) {
+std::optional<std::size_t> Passage::in_column_of(Grains own_from, Grains own_to) const {
+  const auto found = std::ranges::find_if(silent_, [&](std::uint32_t mover) {
     const Other& other = others_[mover];
     // It flew on for as long as it is not called silent, at full rate, and then braked.
     const Grains to = other.done + Grains{2} * full_ * kSilentAfter + Grains{full_} * full_;
-    return keeps_clear(Clearance::column, mover, own_from, own_to, other.done, std::min(end_, to),
-                       separation_m_ + other.off_m + off_m_);
+    return !keeps_clear(Clearance::column, mover, own_from, own_to, other.done, std::min(end_, to),
+                        separation_m_ + other.off_m + off_m_);
   });
+  return found == silent_.end() ? std::nullopt : std::optional<std::size_t>{*found};
 }
 
 bool Passage::leads_out_of_columns() const {
   for (std::int64_t slots = 1; slots <= kOutWithin; ++slots) {
     const Grains at = std::min(end_, done_ + Grains{2} * full_ * slots);
-    if (clear_of_columns(at, at)) return true;
+    if (!in_column_of(at, at)) return true;
     if (at == end_) break;
   }
   return false;
@@ -254,12 +255,12 @@ void Passage::decide() {
   }
   look_for_silence();
   bool columns = !silent_.empty();
-  if (columns && !clear_of_columns({done_, rate_, next_rate_})) columns = !leads_out_of_columns();
+  if (columns && in_column_of({done_, rate_, next_rate_})) columns = !leads_out_of_columns();
   const auto fits = [this, columns](Grains rate) {
     const Future future{done_, rate_, rate};
     if (!clear_of_all(future)) return false;
-    if (columns && !clear_of_columns(future)) {
-      waits_for_ = silent_.front();
+    if (const auto mover = columns ? in_column_of(future) : std::nullopt) {
+      waits_for_ = mover;
       return false;
     }
     next_rate_ = rate;
@@ -281,7 +282,11 @@ void Passage::step(Instant now) {
     done_ = std::min(end_, done_ + rate_ + next_rate_);
     rate_ = next_rate_;
     ++slot_;
-    decide();
+    if (slot_ == current) {
+      decide();
+    } else {  // the slot is over, and what was told last has braked in it
+      next_rate_ = std::max<Grains>(0, rate_ - 1);
+    }
   }
 }
 
@@ -293,6 +298,7 @@ Progress Passage::progress() const {
 }
 
 MotionTrack::Moment Passage::reference(Instant now) const {
+  if (now > Instant{kSlot * (slot_ + 1)}) return track().at(now);
   const double t =
       std::clamp(to_seconds(now - Instant{kSlot * slot_}) / to_seconds(kSlot), 0.0, 1.0);
   const auto begin = static_cast<double>(rate_);

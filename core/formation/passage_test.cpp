@@ -62,6 +62,7 @@ struct Team {
     now += milliseconds{10};
     for (std::size_t i = 0; i < vehicles.size(); ++i) {
       const Instant local = now + clock[i];
+      if (asleep && asleep(i, now)) continue;
       if (stalled) vehicles[i].hold(stalled(i, now));
       vehicles[i].step(local);
       if (now.time_since_epoch() % network.period == Duration{}) {
@@ -72,7 +73,8 @@ struct Team {
       }
     }
     while (!air.empty() && air.front().due <= now) {
-      vehicles[air.front().to].on_progress(air.front().from, air.front().progress);
+      if (!asleep || !asleep(air.front().to, now))
+        vehicles[air.front().to].on_progress(air.front().from, air.front().progress);
       air.pop_front();
     }
     judge();
@@ -115,7 +117,8 @@ struct Team {
   std::vector<Duration> clock;
   std::deque<Sent> air;
   std::vector<Vec3> places;
-  std::function<bool(std::size_t, Instant)> stalled;
+  std::function<bool(std::size_t, Instant)> stalled;  ///< it is held
+  std::function<bool(std::size_t, Instant)> asleep;   ///< its program does nothing
   double least = std::numeric_limits<double>::infinity();
   double fastest = 0.0;
 };
@@ -207,6 +210,22 @@ TEST(Passage, WhoStallsIsNeverRunInto) {
     };
     ASSERT_TRUE(team.run(300.0)) << seed;
     EXPECT_GE(team.least, 3.0) << seed;
+  }
+}
+
+TEST(Passage, WhoseProgramStandsStillGoesOnFromWhereItsTrackHasLed) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Team team{swap_plan(9, 25.0, seed).change, {.delay = milliseconds{300}, .loss = 0.3}, seed};
+    Random random{seed + 2000};
+    const auto victim = random.index(9);
+    const Instant from = at_seconds(random.uniform(1.5, 12.0));
+    const Instant until = from + from_seconds(random.uniform(0.1, 8.0));
+    team.asleep = [=](std::size_t i, Instant now) {
+      return i == victim && now >= from && now < until;
+    };
+    ASSERT_TRUE(team.run(300.0)) << seed;
+    EXPECT_GE(team.least, 3.0) << seed;
+    EXPECT_LE(team.fastest, kLimits.speed_mps + 0.01) << seed;  // nobody jumps
   }
 }
 

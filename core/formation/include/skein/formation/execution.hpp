@@ -39,12 +39,13 @@ class Execution {
   virtual void set_off(double off_m) = 0;
   /// Brakes, and stays where it then is until it may go on.
   virtual void hold(bool held) = 0;
-  /// Decides all slots up to `now`, which never decreases.
+  /// Decides the slot of `now`, which never decreases. In slots that were missed nothing was told:
+  /// its track was flown on, and brakes.
   virtual void step(Instant now) = 0;
 
   /// To be told to the others, with Progress::off_m filled in.
   [[nodiscard]] virtual Progress progress() const = 0;
-  /// At a moment of the slot that step() has reached.
+  /// At a moment of the slot that step() has reached, or later, as its track leads.
   [[nodiscard]] virtual MotionTrack::Moment reference(Instant now) const = 0;
   /// From the slot that step() has reached on: as decided, then braking.
   [[nodiscard]] virtual MotionTrack track() const = 0;

@@ -37,7 +37,8 @@ class FieldFlight final : public Execution {
     Vec3 goal_m = Vec3::Zero();
     bool heard = false;
   };
-  void decide();
+  [[nodiscard]] Vec3 wanted_velocity();
+  void plan_slot(const Vec3& next_velocity_mps);
   [[nodiscard]] std::optional<Vec3> landing_velocity() const;
   [[nodiscard]] Instant slot_begin() const { return Instant{kSlot * slot_}; }
 

@@ -95,8 +95,8 @@ class Passage final : public Execution {
   [[nodiscard]] bool keeps_clear(Clearance what, std::size_t mover, Grains own_from, Grains own_to,
                                  Grains from, Grains to, double apart_m) const;
   void look_for_silence();
-  [[nodiscard]] bool clear_of_columns(const Future& future) const;
-  [[nodiscard]] bool clear_of_columns(Grains own_from, Grains own_to) const;
+  [[nodiscard]] std::optional<std::size_t> in_column_of(const Future& future) const;
+  [[nodiscard]] std::optional<std::size_t> in_column_of(Grains own_from, Grains own_to) const;
   [[nodiscard]] bool leads_out_of_columns() const;
   void look_at_block(std::size_t block, std::int32_t current);
   void look_again(std::size_t mover, Grains at_least_now);
