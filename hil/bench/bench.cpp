@@ -557,11 +557,13 @@ class Bench {
     return at;
   }
 
-  /// Of who is there to see something: its program runs.
+  /// Of who is there to see something: its program runs, and has been heard.
   [[nodiscard]] SiteReports::Team team() const {
     SiteReports::Team team;
     for (const auto& [id, telemetry] : last_) {
-      if (!killed_.contains(id) && !nemesis_.is_down(id)) team.emplace(id, telemetry);
+      const auto ended = ended_.find(id);
+      const bool runs = ended == ended_.end() || ended->second != telemetry.instance;
+      if (runs && !killed_.contains(id)) team.emplace(id, telemetry);
     }
     return team;
   }
@@ -582,7 +584,9 @@ class Bench {
         [this, now](const Fault& fault, const std::vector<VehicleId>& who) {
           if (nemesis_.begin(fault, who, now)) {
             for (const VehicleId id : who) {
-              if (nemesis_.is_down(id)) sensors_.on_program_end(id);
+              if (!nemesis_.is_down(id)) continue;
+              sensors_.on_program_end(id);
+              if (last_.contains(id)) ended_[id] = last_.at(id).instance;
             }
           } else if (std::holds_alternative<ProgramsEnd>(fault.what)) {
             for (const VehicleId id : who) kill(id, now);
@@ -745,6 +749,7 @@ class Bench {
   steady_clock::time_point epoch_;
   std::map<VehicleId, configuration::VehicleConfig> configs_;
   std::map<VehicleId, mission::Telemetry> last_;
+  std::map<VehicleId, InstanceId> ended_;  ///< of programs that start anew: which was ended last
   std::map<VehicleId, steady_clock::time_point> heard_at_;  ///< external vehicles
   std::set<HazardId> told_;
   std::set<VehicleId> killed_;

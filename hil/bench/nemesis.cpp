@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "second_station.hpp"
+#include "skein/base/assert.hpp"
 
 namespace skein::hil {
 namespace {
@@ -30,7 +31,7 @@ bool Nemesis::begin(const Fault& fault, const std::vector<VehicleId>& who, Insta
     for (const VehicleId node : who) stand_still(node, fault.lasts.value_or(Duration{}), now);
   } else if (const auto* slow = std::get_if<ProgramSlow>(&fault.what)) {
     const Instant until = fault.lasts ? now + *fault.lasts : Instant::max();
-    slow_[slow->node] = {slow->stopped_share, until};
+    slow_[slow->node] = {slow->stopped_share, now, until, now};
     spans_.push_back({slow->node, ProgramSpan::Kind::slow, now, until});
     hands_.say("fault: " + describe(fault));
   } else if (const auto* disk = std::get_if<DiskFull>(&fault.what)) {
@@ -52,17 +53,19 @@ void Nemesis::end(VehicleId node, Duration down_for, Instant now) {
   if (program == nullptr) return;
   program->signal(SIGKILL);
   start_at_[node] = now + down_for;
-  still_until_.erase(node);
   stopped_.erase(node);
+  if (still_until_.erase(node) > 0) span_of(node, ProgramSpan::Kind::still).until = now;
   spans_.push_back({node, ProgramSpan::Kind::down, now, std::nullopt});
   hands_.say(fmt::format("fault: {} is killed, for {:.1f} s", of(node), to_seconds(down_for)));
 }
 
 void Nemesis::stand_still(VehicleId node, Duration time, Instant now) {
   if (running(node) == nullptr) return;
-  Instant& until = still_until_[node];
-  until = std::max(until, now + time);
-  spans_.push_back({node, ProgramSpan::Kind::still, now, now + time});
+  const auto [until, begins] = still_until_.emplace(node, now + time);
+  until->second = std::max(until->second, now + time);
+  // One stop after another is a longer one.
+  if (begins) spans_.push_back({node, ProgramSpan::Kind::still, now, {}});
+  span_of(node, ProgramSpan::Kind::still).until = until->second;
   set_running(node, false);
   hands_.say(fmt::format("fault: {} stands still for {:.1f} s", of(node), to_seconds(time)));
 }
@@ -84,24 +87,34 @@ Result<void> Nemesis::step(Instant now) {
     if (disk_full_[node]) anew.file_bytes_max = kRoom_bytes;
     anew.clock_off = clock_off_[node];
     if (auto up = hands_.start(node, anew); !up) return up;
-    for (ProgramSpan& span : spans_) {
-      if (span.node == node && span.kind == ProgramSpan::Kind::down && !span.until) {
-        span.until = now;
-      }
-    }
+    span_of(node, ProgramSpan::Kind::down).until = now;
     hands_.say(of(node) + " starts anew");
+  }
+  std::erase_if(still_until_, [now](const auto& still) { return now >= still.second; });
+  std::erase_if(slow_, [now](const auto& slow) { return now >= slow.second.until; });
+  for (auto& [node, slow] : slow_) {
+    if (stopped_[node]) slow.stopped += now - slow.seen_at;
+    slow.seen_at = now;
   }
   for (const auto& [node, program] : hands_.programs) set_running(node, should_run(node, now));
   return {};
 }
 
 bool Nemesis::should_run(VehicleId node, Instant now) const {
-  const auto still = still_until_.find(node);
-  if (still != still_until_.end() && now < still->second) return false;
-  const auto slow = slow_.find(node);
-  if (slow == slow_.end() || now >= slow->second.until) return true;
-  const auto in_turn = now.time_since_epoch() % kTurn;
-  return in_turn >= from_seconds(slow->second.stopped_share * to_seconds(kTurn));
+  if (still_until_.contains(node)) return false;
+  const auto found = slow_.find(node);
+  if (found == slow_.end()) return true;
+  const Slow& slow = found->second;
+  return to_seconds(slow.stopped) >= slow.stopped_share * to_seconds(now - slow.from);
+}
+
+/// The last one of it, which has begun.
+ProgramSpan& Nemesis::span_of(VehicleId node, ProgramSpan::Kind kind) {
+  const auto found = std::ranges::find_if(spans_.rbegin(), spans_.rend(), [&](const auto& span) {
+    return span.node == node && span.kind == kind;
+  });
+  SKEIN_ASSERT(found != spans_.rend());
+  return *found;
 }
 
 void Nemesis::set_running(VehicleId node, bool runs) {

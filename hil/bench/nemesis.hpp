@@ -40,10 +40,15 @@ class Nemesis {
   /// A fault begins. False: it is none of these, and nothing is done. A program that is down or
   /// gone for good is left alone.
   [[nodiscard]] bool begin(const Fault& fault, const std::vector<VehicleId>& who, Instant now);
-  /// What is due by then: starts, what goes on, and the turns of who is slow. Several times in each
-  /// kTurn. Fails where a program cannot be started.
+  /// What is due by then: starts, what goes on, and who is slow stands still or goes on until the
+  /// next call, by what its share lacks; so it is called several times a second. Fails where a
+  /// program cannot be started.
   [[nodiscard]] Result<void> step(Instant now);
 
+  [[nodiscard]] bool has_stopped(VehicleId node) const {
+    const auto found = stopped_.find(node);
+    return found != stopped_.end() && found->second;
+  }
   [[nodiscard]] bool is_down(VehicleId node) const { return start_at_.contains(node); }
   [[nodiscard]] bool anybody_down() const { return !start_at_.empty(); }
   /// It was killed for good.
@@ -55,19 +60,21 @@ class Nemesis {
 
   /// What a full disk leaves room for in a file: a start's number, and a few lines of a log.
   static constexpr std::size_t kRoom_bytes = 16384;
-  /// Of who is slow.
-  static constexpr Duration kTurn = std::chrono::milliseconds{200};
 
  private:
   struct Slow {
     double stopped_share = 0.0;
+    Instant from{};
     Instant until{};
+    Instant seen_at{};   ///< by step()
+    Duration stopped{};  ///< of the time from `from` to `seen_at`
   };
   void end(VehicleId node, Duration down_for, Instant now);
   void stand_still(VehicleId node, Duration time, Instant now);
   void set_running(VehicleId node, bool runs);
   [[nodiscard]] bool should_run(VehicleId node, Instant now) const;
   [[nodiscard]] ChildProcess* running(VehicleId node);
+  [[nodiscard]] ProgramSpan& span_of(VehicleId node, ProgramSpan::Kind kind);
 
   Hands hands_;
   std::map<VehicleId, Instant> start_at_;

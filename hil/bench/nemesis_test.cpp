@@ -101,16 +101,40 @@ TEST_F(NemesisTest, WhoStandsStillGoesOn) {
   EXPECT_TRUE(comes_to(programs_.at(kTwo), false));
 }
 
-TEST_F(NemesisTest, WhoIsSlowStandsStillForItsShareOfEachTurn) {
-  ASSERT_TRUE(nemesis_.begin({{}, seconds{10}, ProgramSlow{kOne, 0.5}}, {}, at_seconds(2.0)));
-  ASSERT_TRUE(nemesis_.step(at_seconds(2.05)));
-  EXPECT_TRUE(comes_to(programs_.at(kOne), true));
-  ASSERT_TRUE(nemesis_.step(at_seconds(2.15)));
-  EXPECT_TRUE(comes_to(programs_.at(kOne), false));
-  ASSERT_TRUE(nemesis_.step(at_seconds(2.25)));
-  EXPECT_TRUE(comes_to(programs_.at(kOne), true));
-  ASSERT_TRUE(nemesis_.step(at_seconds(12.01)));
-  EXPECT_TRUE(comes_to(programs_.at(kOne), false));
+TEST_F(NemesisTest, WhoIsSlowStandsStillForItsShareOfTheTime) {
+  for (const double share : {0.3, 0.55}) {
+    const Instant from = at_seconds(100.0 * share);
+    ASSERT_TRUE(nemesis_.begin({{}, seconds{4}, ProgramSlow{kOne, share}}, {}, from));
+    int stopped = 0;
+    constexpr int kSteps = 80;
+    for (int i = 0; i < kSteps; ++i) {
+      ASSERT_TRUE(nemesis_.step(from + i * milliseconds{50}));
+      const bool stops = nemesis_.has_stopped(kOne);
+      ASSERT_TRUE(comes_to(programs_.at(kOne), stops));
+      stopped += stops ? 1 : 0;
+    }
+    EXPECT_NEAR(static_cast<double>(stopped) / kSteps, share, 1.5 / kSteps);
+    ASSERT_TRUE(nemesis_.step(from + seconds{4}));
+    EXPECT_TRUE(comes_to(programs_.at(kOne), false));
+  }
+}
+
+TEST_F(NemesisTest, OneStopAfterAnotherIsOneAndAKillEndsIt) {
+  const auto stop = [this](double at_s, seconds lasts) {
+    ASSERT_TRUE(nemesis_.begin({{}, lasts, ProgramsStall{{kTwo}}}, {kTwo}, at_seconds(at_s)));
+  };
+  stop(1.0, seconds{4});
+  stop(3.0, seconds{1});
+  stop(4.0, seconds{3});
+  ASSERT_EQ(nemesis_.spans().size(), 1U);
+  EXPECT_EQ(nemesis_.spans()[0].until, at_seconds(7.0));
+  ASSERT_TRUE(nemesis_.step(at_seconds(7.0)));
+  stop(10.0, seconds{20});
+  ASSERT_TRUE(nemesis_.begin({{}, seconds{1}, ProgramsEnd{{kTwo}}}, {kTwo}, at_seconds(12.0)));
+  ASSERT_TRUE(nemesis_.step(at_seconds(13.0)));
+  ASSERT_EQ(nemesis_.spans().size(), 3U);
+  EXPECT_EQ(nemesis_.spans()[1].until, at_seconds(12.0));
+  EXPECT_EQ(nemesis_.spans()[2].until, at_seconds(13.0));
 }
 
 TEST_F(NemesisTest, AStepOfTheClockAndAFullDiskAreFoundByWhoStartsAnew) {

@@ -144,8 +144,10 @@ void add_faults_done(checks::RunRecord& record, const BenchOutcome& outcome) {
     // Short stops, and being slow, are what a program must bear.
     const bool is_short = span.until && *span.until - span.from < kBorne;
     if (span.kind != Kind::disk_full && span.kind != Kind::slow && !is_short) {
-      record.left_alone.push_back(
-          {span.node, span.from, span.until.value_or(outcome.ended_at + std::chrono::hours{1})});
+      const checks::LeftAlone alone{span.node, span.from,
+                                    span.until.value_or(outcome.ended_at + std::chrono::hours{1})};
+      record.left_alone.push_back(alone);
+      if (span.kind == Kind::still) record.stood_still.push_back(alone);
     }
   }
   std::ranges::stable_sort(record.agent_ends, {}, &checks::AgentEnd::at);

@@ -135,6 +135,10 @@ TEST_F(SessionRecord, WhatAProgramMustBearIsNoExcuse) {
   outcome_.spans = {{kVehicle, Kind::still, at(3.0), at(4.1)}};
   add_faults_done(record, outcome_);
   EXPECT_EQ(record.left_alone.size(), 1U);
+  EXPECT_EQ(record.stood_still.size(), 1U);
+  outcome_.spans = {{kVehicle, Kind::down, at(3.0), at(9.0)}};
+  add_faults_done(record, outcome_);
+  EXPECT_EQ(record.stood_still.size(), 1U) << "it was down, not stopped";
 }
 
 }  // namespace

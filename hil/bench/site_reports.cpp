@@ -35,7 +35,9 @@ std::vector<mission::SiteReport> SiteReports::report_unattended(const Team& team
     return at != team.end() && !is_barred(at->second);
   };
   for (const Site& site : sites_) {
-    if (known_.done(site.id) || std::ranges::any_of(known_.knowing(site.id), attends)) continue;
+    if (answered_.done(site.id) || std::ranges::any_of(answered_.knowing(site.id), attends)) {
+      continue;
+    }
     const VehicleSpec* nearest = nullptr;
     double least_m = 0.0;
     for (const VehicleSpec& vehicle : vehicles_) {

@@ -25,11 +25,18 @@ class SiteReports {
   explicit SiteReports(const configuration::Scenario& scenario)
       : sites_{scenario.sites}, vehicles_{specs(scenario)}, sensors_{sites_, vehicles_} {}
 
-  void on_event(const mission::MissionEvent& event) { known_.on_event(event); }
+  void on_event(const mission::MissionEvent& event) {
+    known_.on_event(event);
+    answered_.on_event(event);
+  }
   /// A site that nobody else has heard of can be found anew.
-  void on_program_end(VehicleId vehicle) { sensors_.hide(known_.on_program_end(vehicle, sites_)); }
+  void on_program_end(VehicleId vehicle) {
+    sensors_.hide(known_.on_program_end(vehicle, sites_));
+    static_cast<void>(answered_.on_program_end(vehicle, sites_));
+  }
   [[nodiscard]] std::vector<mission::SiteReport> look(const Team& team);
-  /// Of what nobody there knows who takes part, each to the nearest that can survey.
+  /// Of what nobody there knows who takes part, each to the nearest that can survey; again until
+  /// one has said that it knows.
   [[nodiscard]] std::vector<mission::SiteReport> report_unattended(const Team& team);
 
  private:
@@ -42,7 +49,8 @@ class SiteReports {
   std::vector<Site> sites_;
   std::vector<VehicleSpec> vehicles_;
   SurveySensors sensors_;
-  KnownSites known_;
+  KnownSites known_;     ///< by what they were told, too
+  KnownSites answered_;  ///< by their own words
 };
 
 /// Those of them that have the role.

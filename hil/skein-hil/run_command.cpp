@@ -154,6 +154,15 @@ bool report_on(const configuration::Scenario& scenario, const checks::RunRecord&
                      [](const auto& check) { return check.held(); });
 }
 
+void tell_how_to_repeat(const RunArguments& arguments, std::uint64_t seed) {
+  const auto& other = arguments.other_programs;
+  fmt::print(
+      "\nThe same faults again, at the same moments of the mission:\n  {} run {} --faults {} "
+      "--seed {}{}{}\n",
+      (arguments.programs / "skein-hil").string(), arguments.scenario.string(), arguments.faults,
+      seed, arguments.dds ? " --dds" : "", other.empty() ? "" : " --other-bin " + other.string());
+}
+
 }  // namespace
 
 bool wants_an_operator(const configuration::Scenario& scenario) {
@@ -222,13 +231,7 @@ int run(const RunArguments& arguments) {
   const bool held = report_on(*scenario, *record, *outcome, arguments, options.run_folder);
   if (!options.faults.empty()) {
     fmt::print("the bench was late by {:.2f} s at most\n", outcome->late_s);
-  }
-  if (!options.faults.empty() && !held) {
-    fmt::print(
-        "\nThe same faults again, at the same moments of the mission:\n  {} run {} --faults "
-        "{} --seed {}{}\n",
-        (arguments.programs / "skein-hil").string(), arguments.scenario.string(), arguments.faults,
-        scenario->seed, options.dds ? " --dds" : "");
+    if (!held) tell_how_to_repeat(arguments, scenario->seed);
   }
   return held && !outcome->interrupted ? kExitHeld : kExitViolated;
 }

@@ -19,12 +19,15 @@ echo 'seed,outcome,seconds,late_s,killed,started_anew,stood_still,slow,disks_ful
 
 count() { grep -cE "$1" "$2" || true; }
 
-# fly SEED SLOT: each slot has ports, and thereby buses, of its own; so have others that run this
+# fly SEED SLOT: each slot has ports, and thereby buses, of its own; so have most others that run this
 fly() {
   local seed=$1 log=$folder/$1.log at=$SECONDS status=0 broken outcome
   rm -rf "${folder:?}/$seed"
   "$programs/skein-hil" run "$scenario" --headless --dds "${arguments[@]}" --seed "$seed" \
-    --port-base $((20000 + 24 * ($2 + jobs * ($$ % 100)))) --out "$folder/$seed" >"$log" 2>&1 || status=$?
+    --port-base $((20000 + 24 * ($2 + jobs * ($$ % (1800 / jobs))))) --out "$folder/$seed" >"$log" 2>&1 &
+  run=$!
+  wait "$run" || status=$?
+  if grep -q '^interrupted;' "$log"; then exit 1; fi
   broken=$(sed -nE 's/^FAIL (.{20}).*/\1/; T; s/ +$//; p' "$log" | paste -sd ';')
   case $status in
     0) outcome=held ;;
@@ -47,11 +50,16 @@ else
   for ((i = 0; i < runs; ++i)); do seeds+=($((first + i))); done
 fi
 head -n 1 "$rows" | sed 's/,/ | /g'
+slots=()
+trap 'kill "${slots[@]}" 2>/dev/null || true; wait; exit 130' INT TERM
 for ((slot = 0; slot < jobs; ++slot)); do
   {
+    run=
+    trap '[[ -z $run ]] || { kill "$run" 2>/dev/null; wait "$run"; }; exit 1' TERM
     sleep $((slot * 3)) # so that not all look for quiet buses at once
     for ((i = slot; i < ${#seeds[@]}; i += jobs)); do fly "${seeds[i]}" "$slot"; done
   } &
+  slots+=($!)
 done
 wait
 held=$(count '^[0-9]+,held,' "$rows") all=${#seeds[@]}
