@@ -31,6 +31,7 @@ Result<std::uint64_t> RowFile::lines(
     if (auto taken = line(text, offset, number); !taken) return taken.error();
     offset += text.size() + 1;
   }
+  if (in.bad()) return Error{file.string() + ": cannot be read to its end"};
   return offset;
 }
 

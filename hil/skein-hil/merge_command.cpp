@@ -51,11 +51,13 @@ Result<std::vector<Part>> parts_of(const MergeArguments& arguments) {
   return parts;
 }
 
-/// The whole of which they are parts: the greatest number of runs that was asked for.
-shards::Series whole_of(const std::vector<Part>& parts) {
+/// The whole of which they are parts: the greatest number of runs that was asked for, now or when
+/// `out` was put together.
+shards::Series whole_of(const std::vector<Part>& parts, const std::filesystem::path& out) {
   shards::Series whole = parts.front().series;
   whole.shard = {};
   for (const Part& part : parts) whole.runs = std::max(whole.runs, part.series.runs);
+  if (const auto before = shards::read_series(out)) whole.runs = std::max(whole.runs, before->runs);
   return whole;
 }
 
@@ -105,7 +107,7 @@ void tell_of_missing(const MergeArguments& arguments, const shards::Series& whol
 }
 
 int merge_sweep(const MergeArguments& arguments, const std::vector<Part>& parts) {
-  const shards::Series whole = whole_of(parts);
+  const shards::Series whole = whole_of(parts, arguments.out);
   const auto& first = parts.front().folder;
   auto experiment = configuration::load_experiment(first / "experiment.yaml");
   if (!experiment) return complain(experiment.error());
@@ -123,7 +125,7 @@ int merge_sweep(const MergeArguments& arguments, const std::vector<Part>& parts)
 }
 
 int merge_series(const MergeArguments& arguments, const std::vector<Part>& parts) {
-  const shards::Series whole = whole_of(parts);
+  const shards::Series whole = whole_of(parts, arguments.out);
   auto table =
       series::SeriesTable::open(arguments.out, whole, series::scenario_of(parts.front().folder));
   if (!table) return complain(table.error());

@@ -147,6 +147,15 @@ TEST_F(Shards, OfACoalitionAreOneMachines) {
             "exit status 0");
   EXPECT_EQ(out(), kept);
 
+  // A shard of fewer runs, merged into the whole, takes none of its runs out of sight.
+  ASSERT_EQ(run(std::string{kProgram} + " simulate " + scenario +
+                " --runs 6 --faults mixed --shard 1/3 --out " + path("few")),
+            "exit status 0");
+  EXPECT_EQ(run(std::string{kProgram} + " merge " + path("few") + " --out " + path("whole")),
+            "exit status 0")
+      << err();
+  EXPECT_EQ(files_of(path("whole")), files_of(path("one")));
+
   // Other faults are another experiment.
   EXPECT_EQ(
       run(std::string{kProgram} + " simulate " + scenario + " --runs 15 --out " + path("one")),
