@@ -62,6 +62,23 @@ TEST(Hindsight, NoMissionIsBetterThanItsBound) {
   EXPECT_GT(compared, 30);
 }
 
+TEST(Hindsight, WhatAppearsLaterBarsNoWayBefore) {
+  Flown flown = fly("coalition-6.yaml", 3);
+  const auto before = look_back(flown.record, flown.limits, 500);
+  ASSERT_TRUE(before.ok());
+  const auto beside = [&flown](Instant known_from) {
+    const Vec2 place = flown.record.sites.front().position + Vec2{300.0, 0.0};
+    flown.record.hazards.clear();
+    flown.record.hazards.push_back({{HazardId{1}, place, 250.0}, known_from});
+    return look_back(flown.record, flown.limits, 500);
+  };
+  const auto later = beside(at_seconds(60.0));
+  ASSERT_TRUE(later.ok());
+  EXPECT_EQ(later->end_s.best, before->end_s.best);
+  const auto always = beside(Instant{});
+  EXPECT_TRUE(!always || always->end_s.best != before->end_s.best);
+}
+
 TEST(Hindsight, WhatWasNotDoneHasNoTimeAndNoReward) {
   Flown flown = fly("coalition-6.yaml", 3);
   const auto before = look_back(flown.record, flown.limits, 500);

@@ -152,10 +152,8 @@ export default [
     slip: 'the best that could have been flown flies through hazards',
     promise: 'a mission is compared with what could have been flown',
     file: 'hil/hindsight/hindsight.cpp',
-    from: 'for (const auto& known : record.hazards) problem.hazards.push_back(known.hazard);',
-    to: `for (const auto& known : record.hazards) {
-    if (known.known_from > Instant{}) problem.hazards.push_back(known.hazard);
-  }`,
+    from: 'if (known.known_from <= Instant{}) problem.hazards',
+    to: 'if (known.known_from > Instant{}) problem.hazards',
   },
   {
     name: 'hindsight-from-the-end',

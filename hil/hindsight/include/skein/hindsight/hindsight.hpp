@@ -40,8 +40,8 @@ inline constexpr std::uint64_t kSteps = 20'000;
 inline constexpr std::uint64_t kFewSteps = 2'000;
 
 /// Vehicles are where their tracks begin, and fly at cruise speed and their planning radius as they
-/// do when they plan; hazards are known from the start. Times begin with the mission. Fails where
-/// there is nothing to compare (no sites, no vehicle's track), the problem is larger than the
+/// do when they plan; hazards that appear in the mission are left out. Times begin with it. Fails
+/// where there is nothing to compare (no sites, no vehicle's track), the problem is larger than the
 /// search takes, or nobody can do a task.
 [[nodiscard]] Result<Hindsight> look_back(const checks::RunRecord& record,
                                           const checks::Limits& limits,
