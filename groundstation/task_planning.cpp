@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <initializer_list>
 
 #include "plan_folder.hpp"
 #include "skein/coupled/intentions.hpp"
@@ -60,6 +61,24 @@ std::string goodness(const CoupledPlan& plan, Criterion criterion) {
                      number(plan.objective), number(plan.bound.value_or(0.0)), 100.0 * plan.gap());
 }
 
+/// Whether there are as many vehicles that can do tasks beside surveys as there are such tasks, of
+/// each kind and in all.
+bool each_may_have_one(const CoupledProblem& problem) {
+  const auto enough = [&](std::initializer_list<TaskKind> kinds) {
+    const auto is_of = [&](const TaskId& task) {
+      return std::ranges::find(kinds, task.kind) != kinds.end();
+    };
+    const auto can = [&](const planning::CoupledVehicle& vehicle) {
+      return std::ranges::any_of(kinds,
+                                 [&](TaskKind kind) { return vehicle.capabilities.has(kind); });
+    };
+    return std::ranges::count_if(problem.open_tasks, is_of) <=
+           std::ranges::count_if(problem.vehicles, can);
+  };
+  return enough({TaskKind::deliver}) && enough({TaskKind::assess}) &&
+         enough({TaskKind::deliver, TaskKind::assess});
+}
+
 }  // namespace
 
 CoupledProblem tasking_problem(const Scenario& scenario) {
@@ -93,10 +112,11 @@ Result<PlannedTasks> plan_tasks(const Scenario& scenario, const planning::Planni
   }
   PlannedTasks planned;
   planned.problem = tasking_problem(scenario);
-  planned.problem.share = planning::TaskShare::one;
+  // Where there are too few vehicles for one task each, they have one at each of several sites.
+  const bool few = !each_may_have_one(planned.problem);
+  planned.problem.share = few ? planning::TaskShare::one_a_site : planning::TaskShare::one;
   auto plan = planning::branch_and_bound(planned.problem, budget);
-  // Where there are too few vehicles for that, they have one task at each of several sites.
-  if (!plan || !plan->left_out.empty()) {
+  if (!few && (!plan || !plan->left_out.empty())) {
     CoupledProblem wider = planned.problem;
     wider.share = planning::TaskShare::one_a_site;
     auto more = planning::branch_and_bound(wider, budget);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "skein/coupled/coupled.hpp"
 #include "skein/planning/budget.hpp"
 
 namespace skein::groundstation {
@@ -81,6 +82,29 @@ TEST(TaskPlanning, LeavesNoSiteOutThatVehiclesCanDoAfterAnother) {
   const auto planned = plan_tasks(scenario);
   ASSERT_TRUE(planned.ok()) << planned.error().message;
   EXPECT_TRUE(planned->plan.left_out.empty());
+}
+
+TEST(TaskPlanning, NoTimeIsSpentOnOneTaskEachWhereVehiclesAreTooFew) {
+  auto scenario = coalition_6();
+  Site second = scenario.sites.front();
+  second.id = SiteId{2};
+  second.position += Vec2{600.0, 0.0};
+  scenario.sites.push_back(second);
+  scenario.tasking.known = {SiteId{1}, SiteId{2}};
+  for (auto& vehicle : scenario.vehicles) {
+    vehicle.spec.loads = 2;
+    vehicle.spec.range_m = 1e6;
+  }
+  const auto search = [](int& asked) {
+    return planning::PlanningBudget{1, [&asked] { return ++asked > 0; }};
+  };
+  int asked = 0;
+  const auto planned = plan_tasks(scenario, search(asked));
+  ASSERT_TRUE(planned.ok()) << planned.error().message;
+  EXPECT_EQ(planned->problem.share, planning::TaskShare::one_a_site);
+  int asked_by_one = 0;
+  EXPECT_TRUE(planning::branch_and_bound(planned->problem, search(asked_by_one)).ok());
+  EXPECT_EQ(asked, asked_by_one) << "searches";
 }
 
 TEST(TaskPlanning, APlanForOthersIsRefused) {
