@@ -20,6 +20,7 @@ namespace skein::hil {
 namespace {
 
 using namespace std::chrono_literals;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -152,6 +153,22 @@ TEST(Faults, WhoIsLostWithItsAirframeFliesNoMoreAndIsMissed) {
   EXPECT_TRUE(is_told) << "the operator";
   EXPECT_THAT(run.broken, IsEmpty());
   EXPECT_TRUE(run.sites_done) << "by the others";
+}
+
+TEST(Faults, WhoIsLostWhileItsProgramIsDownDoesNotStartAnew) {
+  auto mission = seeded_mission(scenario("coalition-6"), 1, "none");
+  ASSERT_TRUE(mission);
+  const VehicleId victim = mission->vehicles.back().spec.id;
+  mission->faults = {{{.not_before = at_seconds(5)}, 10s, ProgramsEnd{{victim}}},
+                     {{.not_before = at_seconds(8)}, {}, ProgramsEnd{{victim}}},
+                     {{.not_before = at_seconds(90)}, {}, Healing{}}};
+  const auto flown = fly(*mission);
+  std::vector<FaultEvent::Kind> kinds;
+  for (const FaultEvent& e : flown.faults) {
+    if (e.vehicle == victim) kinds.push_back(e.kind);
+  }
+  EXPECT_THAT(kinds, ElementsAre(FaultEvent::Kind::ended, FaultEvent::Kind::gone));
+  EXPECT_THAT(flown.run.broken, IsEmpty());
 }
 
 TEST(Faults, WhoStandsStillSaysNothingAndHearsItAllAfterwards) {

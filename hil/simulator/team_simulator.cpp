@@ -360,9 +360,15 @@ class Team {
 
   void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now,
                    bool with_airframe) {
-    if (!ether_.stations()[i].on) return;  // down already
+    const bool was_up = ether_.stations()[i].on;
+    // Who was to start anew may be lost meanwhile.
+    const bool starts_no_more = restart_at_[i] && !down_for;
+    if (!was_up && !starts_no_more) return;
+    restart_at_[i].reset();
     stands_until_[i] = Instant::min();
-    if (i >= ether_.ground()) {
+    if (!was_up) {
+      if (i < ether_.ground() && with_airframe) vehicles_[i].end_with_program();
+    } else if (i >= ether_.ground()) {
       grounds_[i - ether_.ground()].end();
     } else {
       count_errors(i);
