@@ -139,6 +139,12 @@ void taken_by_pilot(Draw& draw) {
   draw.faults.push_back({when, lasts, PilotsTake{{draw.anyone()}}});
 }
 
+void stalled(Draw& draw) {
+  const When when = draw.in_a_change();
+  const Duration lasts = draw.between(milliseconds{100}, seconds{8});
+  draw.faults.push_back({when, lasts, ProgramsStall{{draw.anyone()}}});
+}
+
 void small_clocks(Draw& draw) {
   for (const VehicleId vehicle : draw.vehicles) {
     draw.faults.push_back({{}, {}, ClockOff{vehicle, draw.between(-kClockMax, kClockMax)}});
@@ -235,7 +241,7 @@ constexpr std::array kProfiles{Profile{"none", nullptr, no_fault},
                                Profile{"orders", kOrders},
                                Profile{"clock", kClock},
                                Profile{"taken-back", kTakenBack},
-                               Profile{"stall", kStall},
+                               Profile{"stall", kStall, stalled},
                                Profile{"covered", kCovered},
                                Profile{"double", kDouble, nullptr, kRare},
                                Profile{"airframe", kAirframe, nullptr, kRare},
