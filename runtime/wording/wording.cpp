@@ -456,7 +456,7 @@ struct News {
                " is silent: its way is kept clear, and the order is given again to the others once "
                "they rest";
       case event::FormationNews::back:
-        return who + " is heard again; the next order takes it along";
+        return who + " is back; the next order takes it along";
       case event::FormationNews::not_begun:
         return who + " has not begun the change: the order is given again";
       case event::FormationNews::drift_corrected:
@@ -466,7 +466,7 @@ struct News {
       case event::FormationNews::lost_on_track:
         return who + " is silent: its place stays empty, and the others keep to other heights";
       case event::FormationNews::astray:
-        return who + " is far from where it is led: the others keep clear of it until it is back";
+        return who + " does not fly what it is told: the others keep clear of it until it is back";
       case event::FormationNews::off_place:
         return who + " came to rest beside " +
                (e.vehicles.size() == 1 ? "its place" : "their places") +
