@@ -137,6 +137,11 @@ int main(int argc, char** argv) {
   app.add_option("--config", arguments.config, "The vehicle's configuration, YAML");
   app.add_flag("--check-config", arguments.check_only,
                "Read the configuration, say whether it is good, end");
+  app.add_option_function<double>(
+         "--clock-ahead",
+         [&arguments](double s) { arguments.host.clock_ahead = skein::from_seconds(s); },
+         "For a bench: as if this machine's clock was so many seconds ahead")
+      ->check(CLI::Range(-3600.0, 3600.0));
   app.add_option("--status-socket", arguments.host.status_socket,
                  "Path of a Unix socket where `skein-onboard status` learns how it is");
   app.set_version_flag("--version", "skein-onboard " + skein::version());

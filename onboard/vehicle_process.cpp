@@ -514,7 +514,9 @@ Result<std::unique_ptr<network::Node>> join(const configuration::VehicleConfig& 
 
 int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
   const process::Shutdown shutdown;
-  const process::MissionClock clock{config.time.epoch_unix_ns, config.time.rate};
+  // Mission time is the clock's time since the epoch: either may be moved.
+  const process::MissionClock clock{config.time.epoch_unix_ns - host.clock_ahead.count(),
+                                    config.time.rate};
   process::start_log(clock);
   process::CloseLimit close_limit;
 
@@ -529,7 +531,7 @@ int fly(const configuration::VehicleConfig& config, const HostOptions& host) {
     return process::kExitCannotStart;
   }
   const InstanceId instance = start->instance;
-  LoadBook loads{config.recording_folder, clock.epoch_unix_ns()};
+  LoadBook loads{config.recording_folder, config.time.epoch_unix_ns};
   auto writer = open_recording(config, instance, clock);
   if (!writer) {
     spdlog::critical("cannot record: {}", writer.error().message);

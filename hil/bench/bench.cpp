@@ -139,9 +139,8 @@ class Bench {
     for (const auto& config : configs) {
       if (external_.has(config.vehicle.id)) continue;
       configs_.emplace(config.vehicle.id, config);
-      const Duration off = clock_offset(options_.faults, config.vehicle.id);
-      nemesis_.set_clock(config.vehicle.id, off);
-      if (auto written = write_configuration(config.vehicle.id, off); !written) return written;
+      nemesis_.set_clock(config.vehicle.id, clock_offset(options_.faults, config.vehicle.id));
+      if (auto written = write_configuration(config.vehicle.id); !written) return written;
     }
     if (auto up = launch(kGroundStation, "skein-ground"); !up) return up;
     if (second_) {
@@ -368,9 +367,9 @@ class Bench {
     return options_.run_folder / (log_name(id) + ".yaml");
   }
 
-  Result<void> write_configuration(VehicleId id, Duration clock_off) {
+  Result<void> write_configuration(VehicleId id) {
     const auto left_out =
-        hil::write_configuration(configs_.at(id), configuration_of(id), clock_off, programs_of(id));
+        hil::write_configuration(configs_.at(id), configuration_of(id), programs_of(id));
     if (!left_out) return left_out.error();
     if (!left_out->empty()) say(name_of(id) + " is of a release that has no " + *left_out);
     return {};
@@ -383,11 +382,8 @@ class Bench {
 
   Result<void> start_anew(VehicleId id, const StartAnew& anew) {
     processes_.erase(id);
-    const bool vehicle = configs_.contains(id);
-    if (vehicle) {
-      if (auto written = write_configuration(id, anew.clock_off); !written) return written;
-    }
-    return launch(id, vehicle ? "skein-onboard" : "skein-ground", anew.file_bytes_max);
+    return launch(id, configs_.contains(id) ? "skein-onboard" : "skein-ground",
+                  anew.file_bytes_max);
   }
 
   Result<void> launch(VehicleId id, const std::string& program,
@@ -397,6 +393,9 @@ class Bench {
     const bool other = is_of_other_release(options_.faults, id);
     const auto& programs = other ? options_.other_programs : options_.programs;
     std::vector<std::string> command{(programs / program).string(), "--config", file.string()};
+    if (const Duration ahead = nemesis_.clock_off(id); ahead != Duration{} && !other) {
+      command.insert(command.end(), {"--clock-ahead", fmt::format("{}", to_seconds(ahead))});
+    }
     if (id == kGroundStation && external_.ground() != nullptr) {
       const std::vector<std::string> before{"/bin/sh", "-c",
                                             "exec " + external_.ground()->run + " \"$@\"", "sh"};

@@ -85,7 +85,6 @@ Result<void> Nemesis::step(Instant now) {
     at = start_at_.erase(at);
     StartAnew anew;
     if (disk_full_[node]) anew.file_bytes_max = kRoom_bytes;
-    anew.clock_off = clock_off_[node];
     if (auto up = hands_.start(node, anew); !up) return up;
     span_of(node, ProgramSpan::Kind::down).until = now;
     hands_.say(of(node) + " starts anew");

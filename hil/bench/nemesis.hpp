@@ -15,10 +15,9 @@
 
 namespace skein::hil {
 
-/// In what state of its machine a program starts anew.
+/// In what state of its machine a program starts anew; its clock: Nemesis::clock_off().
 struct StartAnew {
   std::optional<std::size_t> file_bytes_max;  ///< its disk is full
-  Duration clock_off{};                       ///< its clock is so far ahead
 };
 
 /// Does to the programs of nodes what faults say, and notes it. Whatever it has stopped goes on
@@ -56,6 +55,11 @@ class Nemesis {
   /// Everything goes on, for good.
   void let_go();
   [[nodiscard]] const ProgramSpans& spans() const { return spans_; }
+  /// How far its clock is ahead, for a program that starts.
+  [[nodiscard]] Duration clock_off(VehicleId node) const {
+    const auto found = clock_off_.find(node);
+    return found == clock_off_.end() ? Duration{} : found->second;
+  }
   [[nodiscard]] const std::map<VehicleId, Duration>& clocks_off() const { return clock_off_; }
 
   /// What a full disk leaves room for in a file: a start's number, and a few lines of a log.

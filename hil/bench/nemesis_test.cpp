@@ -144,7 +144,7 @@ TEST_F(NemesisTest, AStepOfTheClockAndAFullDiskAreFoundByWhoStartsAnew) {
   ASSERT_TRUE(nemesis_.begin({{}, seconds{1}, ProgramsEnd{{kOne}}}, {kOne}, at_seconds(2.0)));
   ASSERT_TRUE(nemesis_.step(at_seconds(3.0)));
   ASSERT_EQ(started_.size(), 1U);
-  EXPECT_EQ(started_[0].clock_off, milliseconds{2100});
+  EXPECT_EQ(nemesis_.clock_off(kOne), milliseconds{2100});
   EXPECT_EQ(started_[0].file_bytes_max, Nemesis::kRoom_bytes);
 }
 

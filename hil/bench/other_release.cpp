@@ -91,9 +91,8 @@ Result<std::vector<std::string>> fit_configuration(const std::filesystem::path& 
 }
 
 Result<std::string> write_configuration(configuration::VehicleConfig config,
-                                        const std::filesystem::path& file, Duration clock_off,
+                                        const std::filesystem::path& file,
                                         const std::filesystem::path* other) {
-  config.time.epoch_unix_ns -= clock_off.count();
   if (other != nullptr) config.network.transport_plugin.clear();
   std::ofstream{file} << configuration::to_yaml(config);
   if (other == nullptr) return std::string{};

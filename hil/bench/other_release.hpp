@@ -18,12 +18,10 @@ namespace skein::hil {
     const std::filesystem::path& file, const std::filesystem::path& program,
     const std::filesystem::path& log);
 
-/// Of a vehicle whose clock is ahead by that: its mission begins as much earlier. Fitted to another
-/// release, where its programs are in `other`, which then flies without our radio's plugin: then
-/// with the keys that it does not know ("a.b, c"), else empty.
+/// Fitted to another release, where its programs are in `other`, which then flies without our
+/// radio's plugin: then with the keys that it does not know ("a.b, c"), else empty.
 [[nodiscard]] Result<std::string> write_configuration(configuration::VehicleConfig config,
                                                       const std::filesystem::path& file,
-                                                      Duration clock_off,
                                                       const std::filesystem::path* other);
 
 /// Without those lines (from 1), and all that is deeper than each below it. For itself, for tests.

@@ -15,13 +15,13 @@ arguments=("$@")
 [[ " ${arguments[*]-} " == *" --faults "* ]] || arguments+=(--faults nemesis)
 mkdir -p "$folder"
 rows=$folder/runs.csv
-echo 'seed,outcome,seconds,late_s,killed,started_anew,stood_still,slow,disks_full,clocks_set,cuts,other_release,broken' >"$rows"
+echo 'seed,outcome,tasks_done,seconds,late_s,killed,started_anew,stood_still,slow,disks_full,clocks_set,cuts,other_release,broken' >"$rows"
 
 count() { grep -cE "$1" "$2" || true; }
 
 # fly SEED SLOT: each slot has ports, and thereby buses, of its own; so have most others that run this
 fly() {
-  local seed=$1 log=$folder/$1.log at=$SECONDS status=0 broken outcome
+  local seed=$1 log=$folder/$1.log at=$SECONDS status=0 broken outcome tasks
   rm -rf "${folder:?}/$seed"
   "$programs/skein-hil" run "$scenario" --headless --dds "${arguments[@]}" --seed "$seed" \
     --port-base $((20000 + 24 * ($2 + jobs * ($$ % (1800 / jobs))))) --out "$folder/$seed" >"$log" 2>&1 &
@@ -34,7 +34,9 @@ fly() {
     1) outcome=broken ;;
     *) outcome="not flown" ;;
   esac
-  echo "$seed,$outcome,$((SECONDS - at)),$(sed -n 's/^the bench was late by \([0-9.]*\) s.*/\1/p' "$log"),$(
+  # What nobody could do any more is not missed, so a run that held may have done little.
+  tasks=$(sed -nE 's/^(ok|FAIL) +completion +([0-9]+) tasks +([0-9]+) done.*/\3 of \2/p' "$log")
+  echo "$seed,$outcome,$tasks,$((SECONDS - at)),$(sed -n 's/^the bench was late by \([0-9.]*\) s.*/\1/p' "$log"),$(
     count '^fault: .* is killed$' "$log"),$(count 'starts anew$' "$log"),$(
     count '^fault: .*stands still for .* s$' "$log"),$(count '^fault: .*% of the time' "$log"),$(
     count '^fault: .*disk of' "$log"),$(count '^fault: .*clock of .* set by' "$log"),$(
@@ -63,8 +65,13 @@ for ((slot = 0; slot < jobs; ++slot)); do
 done
 wait
 held=$(count '^[0-9]+,held,' "$rows") all=${#seeds[@]}
-echo "$held of $all runs held every promise; rows: $rows"
+read -r done_tasks all_tasks < <(awk -F'[, ]' '$3 ~ /^[0-9]/ {done += $3; all += $5} END {print done + 0, all + 0}' "$rows")
+echo "$held of $all runs held every promise, $done_tasks of $all_tasks tasks were done; rows: $rows"
 if ((held != all)); then
   awk -F, -v folder="$folder" '/^[0-9]/ && $2 != "held" {print "seed " $1 ": " $2 " " $NF "; " folder "/" $1 ".log ends with the command that repeats it"}' "$rows"
+  exit 1
+fi
+if ((all >= 3 && 2 * done_tasks < all_tasks)); then
+  echo "so little was done that nothing is shown" >&2
   exit 1
 fi

@@ -10,6 +10,7 @@ namespace skein::onboard {
 /// How the process is seen from its host.
 struct HostOptions {
   std::string status_socket;  ///< path; empty: none
+  Duration clock_ahead{};     ///< as if this machine's clock was so far ahead, for a bench
 };
 
 /// Flies one vehicle until SIGINT or SIGTERM: puts the parts together, starts the threads of
