@@ -19,12 +19,13 @@ echo 'seed,outcome,tasks_done,seconds,late_s,killed,started_anew,stood_still,slo
 
 count() { grep -cE "$1" "$2" || true; }
 
-# fly SEED SLOT: each slot has ports, and thereby buses, of its own; so have most others that run this
+# fly SEED SLOT: each slot has ports, and thereby buses, of its own; so have most others that run this.
+# All are below those that the kernel gives away by itself, from 32768 on.
 fly() {
   local seed=$1 log=$folder/$1.log at=$SECONDS status=0 broken outcome tasks
   rm -rf "${folder:?}/$seed"
   "$programs/skein-hil" run "$scenario" --headless --dds "${arguments[@]}" --seed "$seed" \
-    --port-base $((20000 + 24 * ($2 + jobs * ($$ % (1800 / jobs))))) --out "$folder/$seed" >"$log" 2>&1 &
+    --port-base $((20000 + 24 * ($2 + jobs * ($$ % (530 / jobs))))) --out "$folder/$seed" >"$log" 2>&1 &
   run=$!
   wait "$run" || status=$?
   if grep -q '^interrupted;' "$log"; then exit 1; fi
