@@ -44,7 +44,7 @@ class SessionRecord : public testing::Test {
     outcome_.epoch_unix_ns = kEpoch_ns;
     outcome_.spans = {{kVehicle, Kind::down, at(3.0), at(10.0)}};
   }
-  ~SessionRecord() override { std::filesystem::remove_all(folder_); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   /// Two plans and two points, by a clock that shows `from` then.
   void record(std::int64_t epoch_ns, double from, double ahead_s) {

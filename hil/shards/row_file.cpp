@@ -47,7 +47,7 @@ Result<RowKey> RowFile::key_of(const std::filesystem::path& file, const std::str
   const auto fields = csv_fields(line);
   if (fields.size() != columns_)
     return bad_line(file.string(), number, "has not one field a column");
-  const auto key = reader(fields);
+  auto key = reader(fields);
   if (!key) return bad_line(file.string(), number, key.error().message);
   return key;
 }
