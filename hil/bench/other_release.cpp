@@ -73,7 +73,7 @@ Result<std::vector<std::string>> fit_configuration(const std::filesystem::path& 
                                                    const std::filesystem::path& log) {
   std::vector<std::string> left_out;
   for (int round = 0; round < kRounds; ++round) {
-    std::ofstream{log, std::ios::trunc};
+    std::ofstream{log, std::ios::trunc}.close();
     auto check = ChildProcess::start(
         {program.string(), "--config", file.string(), "--check-config"}, log, {});
     if (!check) return check.error();
