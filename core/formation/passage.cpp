@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "skein/base/assert.hpp"
@@ -72,6 +73,7 @@ Passage::Passage(const Change& change, std::size_t self, const PassageParams& pa
   block_look_at_.assign((look_at_.size() + kBlock - 1) / kBlock, 0);
   due_.reserve(others_.size());
   silent_.reserve(others_.size());
+  columns_.reserve(others_.size());
 }
 
 void Passage::on_progress(std::size_t mover, const Progress& progress) {
@@ -174,33 +176,35 @@ void Passage::look_for_silence() {
   }
 }
 
-std::optional<std::size_t> Passage::in_column_of(const Future& future) const {
-  for (std::int64_t slot = 0; slot < future.stops_after(); ++slot) {
-    const auto mover =
-        in_column_of(std::min(end_, future.at(slot)), std::min(end_, future.at(slot + 1)));
-    if (mover) return mover;
-  }
-  return std::nullopt;
+bool Passage::is_in_column(std::uint32_t mover, Grains own_from, Grains own_to) const {
+  const Other& other = others_[mover];
+  // It flew on for as long as it is not called silent, at full rate, and then braked.
+  const Grains to = other.done + Grains{2} * full_ * kSilentAfter + Grains{full_} * full_;
+  return !keeps_clear(Clearance::column, mover, own_from, own_to, other.done, std::min(end_, to),
+                      separation_m_ + other.off_m + off_m_);
 }
 
-std::optional<std::size_t> Passage::in_column_of(Grains own_from, Grains own_to) const {
-  const auto found = std::ranges::find_if(silent_, [&](std::uint32_t mover) {
-    const Other& other = others_[mover];
-    // It flew on for as long as it is not called silent, at full rate, and then braked.
-    const Grains to = other.done + Grains{2} * full_ * kSilentAfter + Grains{full_} * full_;
-    return !keeps_clear(Clearance::column, mover, own_from, own_to, other.done, std::min(end_, to),
-                        separation_m_ + other.off_m + off_m_);
-  });
-  return found == silent_.end() ? std::nullopt : std::optional<std::size_t>{*found};
+bool Passage::is_in_column(std::uint32_t mover, const Future& future) const {
+  return is_in_column(mover, done_, std::min(end_, future.at(future.stops_after())));
 }
 
-bool Passage::leads_out_of_columns() const {
+bool Passage::leads_out_of_column(std::uint32_t mover) const {
   for (std::int64_t slots = 1; slots <= kOutWithin; ++slots) {
     const Grains at = std::min(end_, done_ + Grains{2} * full_ * slots);
-    if (!in_column_of(at, at)) return true;
+    if (!is_in_column(mover, at, at)) return true;
     if (at == end_) break;
   }
   return false;
+}
+
+/// All but those that cannot be avoided any more and are left where the way leads on.
+void Passage::look_for_columns() {
+  look_for_silence();
+  columns_.clear();
+  const Future stop{done_, rate_, next_rate_};
+  std::ranges::copy_if(silent_, std::back_inserter(columns_), [&](std::uint32_t mover) {
+    return !is_in_column(mover, stop) || !leads_out_of_column(mover);
+  });
 }
 
 /// Far away, it cannot matter for as long as both would need to meet.
@@ -253,14 +257,14 @@ void Passage::decide() {
   for (std::size_t block = 0; block < block_look_at_.size(); ++block) {
     if (block_look_at_[block] <= current) look_at_block(block, current);
   }
-  look_for_silence();
-  bool columns = !silent_.empty();
-  if (columns && in_column_of({done_, rate_, next_rate_})) columns = !leads_out_of_columns();
-  const auto fits = [this, columns](Grains rate) {
+  look_for_columns();
+  const auto fits = [this](Grains rate) {
     const Future future{done_, rate_, rate};
     if (!clear_of_all(future)) return false;
-    if (const auto mover = columns ? in_column_of(future) : std::nullopt) {
-      waits_for_ = mover;
+    const auto column = std::ranges::find_if(
+        columns_, [&](std::uint32_t mover) { return is_in_column(mover, future); });
+    if (column != columns_.end()) {
+      waits_for_ = *column;
       return false;
     }
     next_rate_ = rate;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -227,6 +228,40 @@ TEST(Passage, WhoseProgramStandsStillGoesOnFromWhereItsTrackHasLed) {
     EXPECT_GE(team.least, 3.0) << seed;
     EXPECT_LE(team.fastest, kLimits.speed_mps + 0.01) << seed;  // nobody jumps
   }
+}
+
+/// One flies under two that fall silent: under the one it cannot stop any more, before the other's
+/// column, which begins before that of the first ends, it can.
+TEST(Passage, AColumnThatIsLeftIsNoLeaveToEnterAnother) {
+  const auto planned = plan_change({.transfers = {{{1}, {0, 0, 10}, {40, 0, 10}},
+                                                  {{2}, {16, 1, 20}, {16, 1, 26}},
+                                                  {{3}, {20, 0, 40}, {-20, 0, 40}}},
+                                    .keep_outs = {},
+                                    .limits = kLimits,
+                                    .separation = kSeparation,
+                                    .reserve_m = 1.0});
+  ASSERT_TRUE(planned.ok()) << planned.error().message;
+  Change change = planned->change;
+  change.number = 1;
+  std::vector<Passage> all;
+  for (std::size_t i = 0; i < 3; ++i) all.emplace_back(change, i, PassageParams{}, Instant{});
+  Passage& below = all[0];
+  Instant now{};
+  const auto x_m = [&] { return below.reference(now).position_m.x(); };
+  while (now < at_seconds(30.0)) {
+    now += kSlot;
+    for (Passage& one : all) one.step(now);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const bool is_heard = i == 1 ? now < at_seconds(1.0) : i == 0 || x_m() < 8.0;
+      for (std::size_t to = 0; is_heard && to < 3; ++to) {
+        if (to != i) all[to].on_progress(i, all[i].progress());
+      }
+    }
+  }
+  EXPECT_GT(x_m(), 8.0);
+  EXPECT_LE(x_m(), 16.0 - std::sqrt(9.0 - 1.0) + 0.01);
+  EXPECT_TRUE(below.at_rest());
+  EXPECT_EQ(below.waits_for(), 1U);
 }
 
 TEST(Passage, HaltsAndStays) {

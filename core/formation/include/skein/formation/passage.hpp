@@ -95,9 +95,10 @@ class Passage final : public Execution {
   [[nodiscard]] bool keeps_clear(Clearance what, std::size_t mover, Grains own_from, Grains own_to,
                                  Grains from, Grains to, double apart_m) const;
   void look_for_silence();
-  [[nodiscard]] std::optional<std::size_t> in_column_of(const Future& future) const;
-  [[nodiscard]] std::optional<std::size_t> in_column_of(Grains own_from, Grains own_to) const;
-  [[nodiscard]] bool leads_out_of_columns() const;
+  void look_for_columns();
+  [[nodiscard]] bool is_in_column(std::uint32_t mover, const Future& future) const;
+  [[nodiscard]] bool is_in_column(std::uint32_t mover, Grains own_from, Grains own_to) const;
+  [[nodiscard]] bool leads_out_of_column(std::uint32_t mover) const;
   void look_at_block(std::size_t block, std::int32_t current);
   void look_again(std::size_t mover, Grains at_least_now);
   void decide();
@@ -122,6 +123,7 @@ class Passage final : public Execution {
   std::vector<std::int32_t> block_look_at_;  ///< the least of each kBlock of them
   std::vector<std::uint32_t> due_;           ///< who can, now
   std::vector<std::uint32_t> silent_;        ///< movers
+  std::vector<std::uint32_t> columns_;       ///< of those of them that are avoided
   std::size_t listened_to_ = 0;              ///< the block of others that was last looked at
   double off_m_ = 0.0;                       ///< beyond what is allowed for
 
