@@ -118,8 +118,9 @@ struct Team {
   std::vector<Duration> clock;
   std::deque<Sent> air;
   std::vector<Vec3> places;
-  std::function<bool(std::size_t, Instant)> stalled;  ///< it is held
-  std::function<bool(std::size_t, Instant)> asleep;   ///< its program does nothing
+  using When = std::function<bool(std::size_t, Instant)>;
+  When stalled;  ///< it is held
+  When asleep;   ///< its program does nothing
   double least = std::numeric_limits<double>::infinity();
   double fastest = 0.0;
 };
@@ -199,16 +200,20 @@ TEST(Passage, SwapOnLevelsKeepsSeparationWhateverIsLostAndWhoeverStalls) {
   EXPECT_GE(team.least, 3.0);
 }
 
+/// Nine that swap, of whom one is so for a while: from `from_s` on or later, at least `least_s`.
+Team swap_of_nine(std::uint64_t seed, double loss, Team::When Team::*so, Random random,
+                  double from_s, double least_s) {
+  Team team{swap_plan(9, 25.0, seed).change, {.delay = milliseconds{300}, .loss = loss}, seed};
+  const auto victim = random.index(9);
+  const Instant from = at_seconds(random.uniform(from_s, 12.0));
+  const Instant until = from + from_seconds(random.uniform(least_s, 8.0));
+  team.*so = [=](std::size_t i, Instant now) { return i == victim && now >= from && now < until; };
+  return team;
+}
+
 TEST(Passage, WhoStallsIsNeverRunInto) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Team team{swap_plan(9, 25.0, seed).change, {.delay = milliseconds{300}, .loss = 0.5}, seed};
-    Random random{seed + 1000};
-    const auto victim = random.index(9);
-    const Instant from = at_seconds(random.uniform(0.5, 12.0));
-    const Instant until = from + from_seconds(random.uniform(0.2, 8.0));
-    team.stalled = [=](std::size_t i, Instant now) {
-      return i == victim && now >= from && now < until;
-    };
+    Team team = swap_of_nine(seed, 0.5, &Team::stalled, Random{seed + 1000}, 0.5, 0.2);
     ASSERT_TRUE(team.run(300.0)) << seed;
     EXPECT_GE(team.least, 3.0) << seed;
   }
@@ -216,14 +221,7 @@ TEST(Passage, WhoStallsIsNeverRunInto) {
 
 TEST(Passage, WhoseProgramStandsStillGoesOnFromWhereItsTrackHasLed) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    Team team{swap_plan(9, 25.0, seed).change, {.delay = milliseconds{300}, .loss = 0.3}, seed};
-    Random random{seed + 2000};
-    const auto victim = random.index(9);
-    const Instant from = at_seconds(random.uniform(1.5, 12.0));
-    const Instant until = from + from_seconds(random.uniform(0.1, 8.0));
-    team.asleep = [=](std::size_t i, Instant now) {
-      return i == victim && now >= from && now < until;
-    };
+    Team team = swap_of_nine(seed, 0.3, &Team::asleep, Random{seed + 2000}, 1.5, 0.1);
     ASSERT_TRUE(team.run(300.0)) << seed;
     EXPECT_GE(team.least, 3.0) << seed;
     EXPECT_LE(team.fastest, kLimits.speed_mps + 0.01) << seed;  // nobody jumps

@@ -89,7 +89,9 @@ class Bench {
         timeline_{all_faults(scenario, options)},
         mission_{scenario},
         nemesis_{{processes_,
-                  [this](VehicleId id, const StartAnew& anew) { return start_anew(id, anew); },
+                  [this](VehicleId id, std::optional<std::size_t> bytes) {
+                    return start_anew(id, bytes);
+                  },
                   [this](const std::string& news) { say(news); }}} {
     progress_.now = Instant{Duration::min()};
   }
@@ -380,10 +382,9 @@ class Bench {
     return is_of_other_release(options_.faults, id) ? &options_.other_programs : nullptr;
   }
 
-  Result<void> start_anew(VehicleId id, const StartAnew& anew) {
+  Result<void> start_anew(VehicleId id, std::optional<std::size_t> file_bytes_max) {
     processes_.erase(id);
-    return launch(id, configs_.contains(id) ? "skein-onboard" : "skein-ground",
-                  anew.file_bytes_max);
+    return launch(id, configs_.contains(id) ? "skein-onboard" : "skein-ground", file_bytes_max);
   }
 
   Result<void> launch(VehicleId id, const std::string& program,

@@ -83,9 +83,8 @@ Result<void> Nemesis::step(Instant now) {
       continue;
     }
     at = start_at_.erase(at);
-    StartAnew anew;
-    if (disk_full_[node]) anew.file_bytes_max = kRoom_bytes;
-    if (auto up = hands_.start(node, anew); !up) return up;
+    const auto file_bytes_max = disk_full_[node] ? std::optional{kRoom_bytes} : std::nullopt;
+    if (auto up = hands_.start(node, file_bytes_max); !up) return up;
     span_of(node, ProgramSpan::Kind::down).until = now;
     hands_.say(of(node) + " starts anew");
   }

@@ -15,18 +15,14 @@
 
 namespace skein::hil {
 
-/// In what state of its machine a program starts anew; its clock: Nemesis::clock_off().
-struct StartAnew {
-  std::optional<std::size_t> file_bytes_max;  ///< its disk is full
-};
-
 /// Does to the programs of nodes what faults say, and notes it. Whatever it has stopped goes on
 /// when the object goes.
 class Nemesis {
  public:
   struct Hands {
     std::map<VehicleId, ChildProcess>& programs;
-    std::function<Result<void>(VehicleId, const StartAnew&)> start;  ///< in place of what ended
+    /// In place of what ended; none of its files may be larger than so many bytes, where given.
+    std::function<Result<void>(VehicleId, std::optional<std::size_t>)> start;
     std::function<void(const std::string&)> say;
   };
   explicit Nemesis(Hands hands) : hands_{std::move(hands)} {}

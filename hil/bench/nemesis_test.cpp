@@ -59,11 +59,11 @@ class NemesisTest : public testing::Test {
   std::filesystem::path folder_ =
       std::filesystem::path{testing::TempDir()} / ("nemesis-" + std::to_string(::getpid()));
   std::map<VehicleId, ChildProcess> programs_;
-  std::vector<StartAnew> started_;
+  std::vector<std::optional<std::size_t>> started_;  ///< with files of so many bytes at most
   Nemesis nemesis_{{programs_,
-                    [this](VehicleId id, const StartAnew& anew) -> Result<void> {
-                      started_.push_back(anew);
-                      start(id, anew.file_bytes_max);
+                    [this](VehicleId id, std::optional<std::size_t> bytes) -> Result<void> {
+                      started_.push_back(bytes);
+                      start(id, bytes);
                       return {};
                     },
                     [](const std::string&) {}}};
@@ -145,7 +145,7 @@ TEST_F(NemesisTest, AStepOfTheClockAndAFullDiskAreFoundByWhoStartsAnew) {
   ASSERT_TRUE(nemesis_.step(at_seconds(3.0)));
   ASSERT_EQ(started_.size(), 1U);
   EXPECT_EQ(nemesis_.clock_off(kOne), milliseconds{2100});
-  EXPECT_EQ(started_[0].file_bytes_max, Nemesis::kRoom_bytes);
+  EXPECT_EQ(started_[0], Nemesis::kRoom_bytes);
 }
 
 TEST_F(NemesisTest, WhoHasAFullDiskIsRefusedWhatGoesBeyondAndLives) {

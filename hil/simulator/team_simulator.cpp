@@ -360,15 +360,23 @@ class Team {
 
   void end_program(std::size_t i, const std::optional<Duration>& down_for, Instant now,
                    bool with_airframe) {
-    const bool was_up = ether_.stations()[i].on;
+    const bool runs = ether_.stations()[i].on;
     // Who was to start anew may be lost meanwhile.
-    const bool starts_no_more = restart_at_[i] && !down_for;
-    if (!was_up && !starts_no_more) return;
+    if (!runs && (down_for || !restart_at_[i])) return;
     restart_at_[i].reset();
+    if (runs) stop_program(i, now, with_airframe);
+    if (down_for) {
+      restart_at_[i] = now + *down_for;
+    } else {
+      gone_at_[i] = now;
+    }
+    tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone,
+         ether_.stations()[i].node.id, with_airframe ? "with its airframe" : "");
+  }
+
+  void stop_program(std::size_t i, Instant now, bool with_airframe) {
     stands_until_[i] = Instant::min();
-    if (!was_up) {
-      if (i < ether_.ground() && with_airframe) vehicles_[i].end_with_program();
-    } else if (i >= ether_.ground()) {
+    if (i >= ether_.ground()) {
       grounds_[i - ether_.ground()].end();
     } else {
       count_errors(i);
@@ -381,13 +389,6 @@ class Team {
       }
     }
     ether_.turn(i, false);
-    if (down_for) {
-      restart_at_[i] = now + *down_for;
-    } else {
-      gone_at_[i] = now;
-    }
-    tell(now, down_for ? FaultEvent::Kind::ended : FaultEvent::Kind::gone,
-         ether_.stations()[i].node.id, with_airframe ? "with its airframe" : "");
   }
 
   void tell_plan(const Aircraft& v, Instant now) {
