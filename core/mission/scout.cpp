@@ -273,8 +273,7 @@ std::optional<SurveyedSite> Scout::relieve(Instant now) {
 
 void Scout::call_off() {
   if (!flying()) return;
-  const bool was_relief = machine_.in(State::to_relief) || machine_.in(State::listening);
-  if (!was_relief) found_.push_back({site_});
+  if (surveys()) found_.push_back({site_});
   fire(Event::called_off);
 }
 

@@ -81,10 +81,13 @@ class Scout {
 
   [[nodiscard]] State state() const { return machine_.state(); }
   [[nodiscard]] bool flying() const { return !machine_.in(State::idle); }
+  /// That is a task, for which others wait. A relief gives way to any.
+  [[nodiscard]] bool surveys() const {
+    return machine_.in(State::to_survey) || machine_.in(State::surveying);
+  }
   /// The survey that it is about; none where it goes to relieve.
   [[nodiscard]] std::optional<TaskId> task() const {
-    const bool surveys = machine_.in(State::to_survey) || machine_.in(State::surveying);
-    return surveys ? std::optional{TaskId{site_.id, TaskKind::survey, 0}} : std::nullopt;
+    return surveys() ? std::optional{TaskId{site_.id, TaskKind::survey, 0}} : std::nullopt;
   }
   [[nodiscard]] Instant next_timeout() const;
   /// Reports of sites that there was no room for.

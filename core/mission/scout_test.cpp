@@ -232,6 +232,77 @@ TEST(Scout, GoesBackToItsSearchWhenTheLostLeaderIsHeard) {
   EXPECT_TRUE(s.ownship.flight().searching());
 }
 
+/// Where several leaders are lost at once, all that are free set out to the same site: nobody would
+/// bid for another one before they are there.
+struct Relieving : FlownAgent {
+  Relieving() : FlownAgent{plane_config()} {
+    fly(1.0);
+    call(1, 7, 1.0);
+    while (count(EventKind::relief_begun) == 0 && to_seconds(state.time) < 200.0) fly(0.5);
+  }
+  /// A leader announces that site.
+  void call(std::uint16_t site, std::uint16_t leader, double bids_for_s) {
+    coalition::Announcement call;
+    call.round = round_of(leader);
+    call.site = test_site(site);
+    call.tasks = tasks_after_survey(call.site);
+    call.announced_at = state.time;
+    call.bids_until = state.time + from_seconds(bids_for_s);
+    call.formed_at = call.bids_until + std::chrono::seconds{2};
+    call.reward = 1.0;
+    call.leader_at_formation = call.site.position;
+    tell(coalition::Message{call});
+  }
+  void award(std::uint16_t site, std::uint16_t leader, VehicleId to) {
+    coalition::Award award;
+    award.round = round_of(leader);
+    award.site = test_site(site);
+    award.formed_at = state.time + std::chrono::seconds{1};
+    award.assignments = {
+        {{{site}, TaskKind::deliver, 0}, to, state.time + std::chrono::seconds{90}}};
+    award.awarded_at = state.time;
+    award.lease_until = state.time + std::chrono::seconds{120};
+    tell(coalition::Message{award});
+  }
+  static coalition::Round round_of(std::uint16_t leader) { return {{{leader}, {1}, 1}, 1}; }
+  [[nodiscard]] std::ptrdiff_t count(EventKind kind) const {
+    return std::ranges::count_if(
+        events, [kind](const MissionEvent& event) { return event.kind() == kind; });
+  }
+};
+
+TEST(Scout, OnItsWayToRelieveASiteItBidsForAnother) {
+  Relieving vehicle;
+  ASSERT_EQ(vehicle.count(EventKind::relief_begun), 1);
+  const auto bids = vehicle.count(EventKind::bid_sent);
+  vehicle.call(2, 8, 1.0);
+  EXPECT_EQ(vehicle.count(EventKind::bid_sent), bids + 1);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::surveying) << "it flies on meanwhile";
+  vehicle.award(2, 8, vehicle.agent.telemetry().vehicle);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::executing);
+  EXPECT_EQ(vehicle.agent.telemetry().task.site, SiteId{2});
+}
+
+TEST(Scout, WhoWasNotAwardedWhatItBidForRelievesItsSite) {
+  Relieving vehicle;
+  const std::uint32_t plan = vehicle.plan.number;
+  vehicle.call(2, 8, 1.0);
+  vehicle.award(2, 8, {8});
+  for (int i = 0; i < 300 && vehicle.agent.activity() == Activity::surveying; ++i) vehicle.fly(0.5);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::leading);
+  EXPECT_EQ(vehicle.plan.number, plan) << "one way there, whatever it bid for meanwhile";
+}
+
+TEST(Scout, LeadsNothingBeforeWhatItBidForIsDecided) {
+  Relieving vehicle;
+  vehicle.call(2, 8, 120.0);
+  vehicle.fly(100.0);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::surveying) << "it has long been there";
+  EXPECT_GT(vehicle.agent.next_timeout(), vehicle.state.time);
+  for (int i = 0; i < 300 && vehicle.agent.activity() == Activity::surveying; ++i) vehicle.fly(0.5);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::leading);
+}
+
 TEST(Scout, WhatWasLedInVainComesAfterAllElse) {
   Scouting s;
   EXPECT_FALSE(s.scout.has_another_site());

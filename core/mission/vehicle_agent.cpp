@@ -79,7 +79,9 @@ void VehicleAgent::Impl::step(Instant now) {
   leader_.repeat(now);
   pump(now);
   flyer_.fly(now);
-  if (const auto site = scout_.fly(now)) leader_.lead(*site, now);
+  if (flyer_.free()) {  // who has bid on its way to relieve a site leads none before it knows
+    if (const auto site = scout_.fly(now)) leader_.lead(*site, now);
+  }
   pump(now);
   watch_range(now);
   watch_fence(now);
@@ -118,6 +120,7 @@ void VehicleAgent::Impl::pass_on(Instant now) {
 void VehicleAgent::Impl::check() const {
   SKEIN_ASSERT(!(leader_.leading() && scout_.flying()));
   SKEIN_ASSERT(!(flyer_.flying() && scout_.flying()));
+  SKEIN_ASSERT(flyer_.free() || !scout_.surveys());
   SKEIN_ASSERT(!flyer_.flying() || !flyer_.free());  // it holds its task, or awaits a successor
 }
 
@@ -147,13 +150,14 @@ void VehicleAgent::Impl::answer(const coalition::Participant::Output& output, In
     if (!scout_.is_withdrawn(won->plan.site.id)) leader_.take_over(*won, now);
   } else {
     flyer_.answer(output, now);
+    if (flyer_.flying()) scout_.call_off();  // it was on its way to relieve another site
   }
 }
 
 coalition::Reason VehicleAgent::Impl::otherwise_engaged(const coalition::Announcement& call) const {
   if (!failsafe_.in(Failsafe::Action::none)) return failsafe_.reason();
   if (scout_.is_withdrawn(call.site.id)) return coalition::Reason::site_withdrawn;
-  if (scout_.flying()) return coalition::Reason::surveying;
+  if (scout_.surveys()) return coalition::Reason::surveying;
   if (leader_.leads_other(call.round.coalition)) return coalition::Reason::leading;
   return coalition::Reason::none;
 }
@@ -230,7 +234,11 @@ RouteStanding VehicleAgent::Impl::route_standing() const {
 }
 
 Instant VehicleAgent::Impl::next_timeout() const {
-  return std::min({leader_.next_timeout(), flyer_.next_timeout(), scout_.next_timeout()});
+  return std::min({leader_.next_timeout(), flyer_.next_timeout(), scout_timeout()});
+}
+
+Instant VehicleAgent::Impl::scout_timeout() const {
+  return flyer_.free() ? scout_.next_timeout() : Instant::max();
 }
 
 /// As step() goes through the parts. A leader looks with every step where it will be.
@@ -241,7 +249,7 @@ Instant VehicleAgent::Impl::quiet_until(Instant now) const {
       separation_.watches() || traffic_.watches() || lands_ || ownship_.config().fence.exists();
   if (!flight.started() || busy || routes_.awaits() || looks) return now;
   Instant next = std::min({leader_.next_timeout(), flyer_.quiet_until(may_lead(), now),
-                           scout_.next_timeout(), idle_until(now)});
+                           scout_timeout(), idle_until(now)});
   if (flight.en_route(now)) next = std::min(next, flight.plan().timed.end_time());
   if (!flyer_.in_run()) next = std::min(next, failsafe_.wants_range_at());
   // A battery's percentage counts from when it changes.

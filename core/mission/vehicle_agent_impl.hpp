@@ -60,6 +60,7 @@ class VehicleAgent::Impl {
   [[nodiscard]] PartStates part_states() const;
   [[nodiscard]] bool may_lead() const;
   [[nodiscard]] Instant idle_until(Instant now) const;
+  [[nodiscard]] Instant scout_timeout() const;
 
   void on_command(const Command& message, Instant now);
   void obey(CommandKind order, Instant now);
