@@ -15,8 +15,6 @@ namespace {
 constexpr double kExact_m = 1e-3;
 /// Slots by which a message may be ahead: its own slot and differing clocks.
 constexpr std::int64_t kAheadMax = 4;
-/// Not heard for so many slots: its program may have ended.
-constexpr std::int64_t kSilentAfter = 10;
 /// Out of a column that cannot be avoided, at full rate: after as many slots at most.
 constexpr std::int64_t kOutWithin = 80;
 
@@ -57,6 +55,7 @@ Passage::Passage(const Change& change, std::size_t self, const PassageParams& pa
   grain_s_ = slot_s / (2.0 * full_);
   end_ = static_cast<Grains>(std::ceil(to_seconds(motion_.duration()) / grain_s_));
   clock_error_ = static_cast<Grains>(std::ceil(to_seconds(params.clock_error) / grain_s_));
+  silent_after_ = (params.silent_after + kSlot - Duration{1}) / kSlot;
   const double stretch = std::max(1.0, height_factor_);
   for (std::size_t i = 0; i < others_.size(); ++i) {
     others_[i].slot = start_;
@@ -84,7 +83,7 @@ void Passage::on_progress(std::size_t mover, const Progress& progress) {
                         slot <= slot_ + kAheadMax;
   // Nobody goes back: what says so is older than what is known.
   if (!possible || slot < other.slot || progress.done < other.done) return;
-  if (slot_ - other.slot > kSilentAfter) std::erase(silent_, static_cast<std::uint32_t>(mover));
+  if (slot_ - other.slot > silent_after_) std::erase(silent_, static_cast<std::uint32_t>(mover));
   other.slot = slot;
   other.done = progress.done;
   other.rate = progress.rate;
@@ -170,41 +169,60 @@ void Passage::look_for_silence() {
   listened_to_ = (listened_to_ + 1) % block_look_at_.size();
   const std::size_t end = std::min(others_.size(), (listened_to_ + 1) * kBlock);
   for (std::size_t i = listened_to_ * kBlock; i < end; ++i) {
-    if (i == self_ || slot_ - others_[i].slot <= kSilentAfter) continue;
+    if (i == self_ || slot_ - others_[i].slot <= silent_after_) continue;
     const auto mover = static_cast<std::uint32_t>(i);
     if (std::find(silent_.begin(), silent_.end(), mover) == silent_.end()) silent_.push_back(mover);
   }
 }
 
-bool Passage::is_in_column(std::uint32_t mover, Grains own_from, Grains own_to) const {
+bool Passage::is_in_column(std::uint32_t mover, Grains own_from, Grains own_to,
+                           double apart_m) const {
   const Other& other = others_[mover];
   // It flew on for as long as it is not called silent, at full rate, and then braked.
-  const Grains to = other.done + Grains{2} * full_ * kSilentAfter + Grains{full_} * full_;
+  const Grains to = other.done + Grains{2} * full_ * silent_after_ + Grains{full_} * full_;
   return !keeps_clear(Clearance::column, mover, own_from, own_to, other.done, std::min(end_, to),
-                      separation_m_ + other.off_m + off_m_);
+                      apart_m + other.off_m + off_m_);
 }
 
-bool Passage::is_in_column(std::uint32_t mover, const Future& future) const {
-  return is_in_column(mover, done_, std::min(end_, future.at(future.stops_after())));
+Passage::Grains Passage::stop_of(const Future& future) const {
+  return std::min(end_, future.at(future.stops_after()));
 }
 
-bool Passage::leads_out_of_column(std::uint32_t mover) const {
-  for (std::int64_t slots = 1; slots <= kOutWithin; ++slots) {
-    const Grains at = std::min(end_, done_ + Grains{2} * full_ * slots);
-    if (!is_in_column(mover, at, at)) return true;
-    if (at == end_) break;
+/// Beyond where it would stop, at full rate, and unless it is the silent one itself that bars the
+/// way.
+std::optional<Passage::Grains> Passage::way_out_of_column(std::uint32_t mover, Grains stop) const {
+  const Other& other = others_[mover];
+  const double apart_m = other.apart_m + other.off_m + off_m_;
+  Grains from = done_;
+  for (std::int64_t slots = 1; slots <= kOutWithin && from < end_; ++slots) {
+    const Grains at = std::min(end_, from + Grains{2} * full_);
+    if (!keeps_clear(Clearance::vehicle, mover, from, at, at_least(other, slot_ + slots - 1), at,
+                     apart_m)) {
+      return std::nullopt;
+    }
+    if (at >= stop && !is_in_column(mover, at, at, separation_m_)) return at;
+    from = at;
   }
-  return false;
+  return std::nullopt;
+}
+
+/// A stop at its edge, where there is less room than for what both may be off, is better than a way
+/// through it.
+bool Passage::leaves_column(std::uint32_t mover) const {
+  const Grains stop = stop_of({done_, rate_, next_rate_});
+  if (!is_in_column(mover, done_, stop, separation_m_)) return false;
+  const auto out = way_out_of_column(mover, stop);
+  if (!out) return false;
+  const double within_m = separation_m_ - 2.0 * params_.tolerance_m;
+  return is_in_column(mover, done_, stop, within_m) || !is_in_column(mover, done_, *out, within_m);
 }
 
 /// All but those that cannot be avoided any more and are left where the way leads on.
 void Passage::look_for_columns() {
   look_for_silence();
   columns_.clear();
-  const Future stop{done_, rate_, next_rate_};
-  std::ranges::copy_if(silent_, std::back_inserter(columns_), [&](std::uint32_t mover) {
-    return !is_in_column(mover, stop) || !leads_out_of_column(mover);
-  });
+  std::ranges::copy_if(silent_, std::back_inserter(columns_),
+                       [&](std::uint32_t mover) { return !leaves_column(mover); });
 }
 
 /// Far away, it cannot matter for as long as both would need to meet.
@@ -261,8 +279,9 @@ void Passage::decide() {
   const auto fits = [this](Grains rate) {
     const Future future{done_, rate_, rate};
     if (!clear_of_all(future)) return false;
-    const auto column = std::ranges::find_if(
-        columns_, [&](std::uint32_t mover) { return is_in_column(mover, future); });
+    const auto column = std::ranges::find_if(columns_, [&](std::uint32_t mover) {
+      return is_in_column(mover, done_, stop_of(future), separation_m_);
+    });
     if (column != columns_.end()) {
       waits_for_ = *column;
       return false;

@@ -53,8 +53,10 @@ struct Team {
       : change{planned}, network{net}, random{seed} {
     change.number = 1;
     change.start = at_seconds(1.0);
+    PassageParams params;
+    params.silent_after = network.delay + 2 * kSlot;
     for (std::size_t i = 0; i < change.movers.size(); ++i) {
-      vehicles.emplace_back(change, i, PassageParams{}, now);
+      vehicles.emplace_back(change, i, params, now);
       clock.push_back(from_seconds(random.uniform(-0.01, 0.01)));
     }
   }
@@ -260,6 +262,66 @@ TEST(Passage, AColumnThatIsLeftIsNoLeaveToEnterAnother) {
   EXPECT_LE(x_m(), 16.0 - std::sqrt(9.0 - 1.0) + 0.01);
   EXPECT_TRUE(below.at_rest());
   EXPECT_EQ(below.waits_for(), 1U);
+}
+
+/// One that flies along a line, 3 s to the other end, under one that stands 1 m beside its middle,
+/// and is heard until the first is at `silent_at_m`.
+struct UnderASilentOne {
+  explicit UnderASilentOne(double silent_at_m) {
+    const auto planned =
+        plan_change({.transfers = {{{1}, {0, 0, 10}, {40, 0, 10}}, {{2}, {20, 1, 20}, {20, 1, 26}}},
+                     .keep_outs = {},
+                     .limits = kLimits,
+                     .separation = kSeparation,
+                     .reserve_m = 1.0});
+    SKEIN_ASSERT(planned.ok());
+    Change change = planned->change;
+    change.number = 1;
+    const PassageParams params;
+    Passage below{change, 0, params, Instant{}};
+    Passage above{change, 1, params, Instant{}};
+    std::optional<Instant> last_heard;
+    for (Instant now{}; now < at_seconds(40.0); now += kSlot) {
+      below.step(now);
+      above.step(now);
+      above.on_progress(0, below.progress());
+      const auto moment = below.reference(now);
+      at_m = moment.position_m.x();
+      const double speed_mps = moment.velocity_mps.norm();
+      if (at_m < silent_at_m) {
+        below.on_progress(1, above.progress());
+        last_heard = now;
+      } else if (last_heard && !would_stop_m &&
+                 now - *last_heard > params.silent_after + 2 * kSlot) {
+        would_stop_m = at_m + speed_mps * speed_mps / (2.0 * kLimits.acceleration_mps2);
+      }
+    }
+    rests = below.at_rest();
+  }
+  double at_m = 0.0;  ///< in the end
+  bool rests = false;
+  std::optional<double> would_stop_m;  ///< by full braking once the other is silent
+};
+
+TEST(Passage, WhoCanStopAtTheEdgeOfAColumnDoes) {
+  // Of the 3 m apart, 1 m is for what both may be off.
+  const double edge_m = 20.0 - std::sqrt(4.0 - 1.0);
+  int stopped = 0;
+  int passed = 0;
+  for (double silent_at_m = 2.0; silent_at_m < 20.0; silent_at_m += 0.25) {
+    const UnderASilentOne run{silent_at_m};
+    ASSERT_TRUE(run.would_stop_m) << silent_at_m;
+    if (*run.would_stop_m < edge_m - 0.3) {
+      EXPECT_TRUE(run.rests) << silent_at_m;
+      EXPECT_LE(run.at_m, edge_m) << silent_at_m;
+      ++stopped;
+    } else if (*run.would_stop_m > edge_m + 0.5) {
+      EXPECT_NEAR(run.at_m, 40.0, 0.01) << "it leads out, from " << silent_at_m;
+      ++passed;
+    }
+  }
+  EXPECT_GT(stopped, 20);
+  EXPECT_GT(passed, 5);
 }
 
 TEST(Passage, HaltsAndStays) {

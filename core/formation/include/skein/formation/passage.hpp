@@ -15,6 +15,8 @@ namespace skein::formation {
 struct PassageParams {
   Duration clock_error = std::chrono::milliseconds{20};  ///< between any two vehicles
   double tolerance_m = 0.5;  ///< Progress::off_m up to which Change::separation allows for it
+  /// Who is not heard for so long may have lost its program.
+  Duration silent_after = std::chrono::milliseconds{300};
 };
 
 /// Flies one vehicle's part of a change so that separation holds however late others are and
@@ -31,9 +33,9 @@ struct PassageParams {
 /// that the plan has in plan time, so there is no deadlock once messages come through;
 /// ChangeRequest::reserve_m is what the others may be late by without anybody slowing down.
 ///
-/// Who is not heard for half a second may have lost its program and come down: nobody enters the
-/// column below where it may be; who cannot stop before it, or is in it, goes on where its way soon
-/// leads out, and stops where not.
+/// Who is silent may have lost its program and come down: nobody enters the column below where it
+/// may be; who cannot stop before it, or is in it, goes on where its way soon leads out, and stops
+/// where not. So does who would stop at its edge, where all is kept but what both may be off.
 ///
 /// step() and reference() allocate nothing.
 class Passage final : public Execution {
@@ -96,9 +98,11 @@ class Passage final : public Execution {
                                  Grains from, Grains to, double apart_m) const;
   void look_for_silence();
   void look_for_columns();
-  [[nodiscard]] bool is_in_column(std::uint32_t mover, const Future& future) const;
-  [[nodiscard]] bool is_in_column(std::uint32_t mover, Grains own_from, Grains own_to) const;
-  [[nodiscard]] bool leads_out_of_column(std::uint32_t mover) const;
+  [[nodiscard]] bool is_in_column(std::uint32_t mover, Grains own_from, Grains own_to,
+                                  double apart_m) const;
+  [[nodiscard]] Grains stop_of(const Future& future) const;
+  [[nodiscard]] std::optional<Grains> way_out_of_column(std::uint32_t mover, Grains stop) const;
+  [[nodiscard]] bool leaves_column(std::uint32_t mover) const;
   void look_at_block(std::size_t block, std::int32_t current);
   void look_again(std::size_t mover, Grains at_least_now);
   void decide();
@@ -117,6 +121,7 @@ class Passage final : public Execution {
   std::uint16_t full_ = 1;
   Grains end_ = 0;
   Grains clock_error_ = 0;
+  std::int64_t silent_after_ = 0;      ///< slots
   std::int64_t start_ = 0;             ///< slots; plan time begins
   std::vector<Other> others_;          ///< and this vehicle itself, of whom only the speed counts
   std::vector<std::int32_t> look_at_;  ///< slots since start_, before which each cannot matter
