@@ -94,9 +94,7 @@ CoupledProblem tasking_problem(const Scenario& scenario) {
   }
   problem.open_tasks = planning::tasks_of(problem.sites);
   problem.decide_wait = scenario.protocol.formation_time() + scenario.protocol.authorisation_lead;
-  for (const configuration::ScenarioHazard& known : scenario.hazards) {
-    if (known.known_from <= Instant{}) problem.hazards.push_back(known.hazard);
-  }
+  problem.hazards = hazards_known_at(scenario.hazards, Instant{});
   problem.criterion = scenario.tasking.criterion;
   problem.optional_sites = scenario.tasking.optional;
   problem.flyable_waits = false;  // who is early waits on an orbit

@@ -3,6 +3,7 @@
 
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
+#include "skein/domain/hazard.hpp"
 #include "skein/domain/path.hpp"
 #include "skein/domain/set_down.hpp"
 #include "skein/domain/site.hpp"
@@ -46,6 +47,16 @@ TEST(TimedPath, APieceOfItIsFlownTheSame) {
     EXPECT_NEAR(a.x_m, b.x_m, 1e-9);
     EXPECT_NEAR(a.y_m, b.y_m, 1e-9);
   }
+}
+
+TEST(Hazard, WhatIsKnownAtTheEpochWasKnownBefore) {
+  const auto id = [](std::uint16_t number) { return Hazard{.id = {number}}; };
+  const std::vector<TimedHazard> all{
+      {id(1), Instant{}}, {id(2), at_seconds(5.0)}, {id(3), at_seconds(-1.0)}};
+  EXPECT_TRUE(all[0].known_before() && all[2].known_before());
+  EXPECT_FALSE(all[1].known_before());
+  EXPECT_EQ(hazards_known_at(all, Instant{}).size(), 2U);
+  EXPECT_EQ(hazards_known_at(all, at_seconds(5.0)).at(1).id, HazardId{2});
 }
 
 /// Some lines and arcs, then an orbit, flown at 25 m/s in a wind of up to 7 m/s.

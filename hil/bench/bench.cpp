@@ -641,8 +641,7 @@ class Bench {
       }
     }
     for (const auto& h : scenario_.hazards) {
-      if (h.known_from <= Instant{} || now < h.known_from || !told_.insert(h.hazard.id).second)
-        continue;
+      if (h.known_before() || now < h.known_from || !told_.insert(h.hazard.id).second) continue;
       publish(mission::HazardReport{h.hazard});
     }
   }

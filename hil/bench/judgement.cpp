@@ -28,7 +28,7 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
         {end.vehicle, scenario.routes.site, end.heading_rad, end.planned, end.offset});
   }
   record.sites = scenario.sites;
-  for (const auto& h : scenario.hazards) record.hazards.push_back({h.hazard, h.known_from});
+  record.hazards = scenario.hazards;
   record.fence = scenario.fence;
   for (const auto& v : scenario.vehicles) record.vehicles.push_back(v.spec);
   record.lost = outcome.killed;

@@ -30,8 +30,8 @@ struct Held {
 /// A vehicle knows of a hazard when that appears, or, where no program was running on it, from its
 /// next start on, and where that stood still, from when it goes on. None where that never came.
 std::optional<Held> held(const RunRecord& record, const Recording& recorded,
-                         const KnownHazard& known, const Limits& limits) {
-  if (known.known_from <= Instant{}) return Held{known.known_from, true};
+                         const TimedHazard& known, const Limits& limits) {
+  if (known.known_before()) return Held{known.known_from, true};
   Instant knows = known.known_from;
   if (!recorded.track.empty()) knows = std::max(knows, recorded.track.front().state.time);
   for (const AgentEnd& end : record.agent_ends) {
@@ -156,7 +156,7 @@ double clearance_m(const VehicleState& s, const Hazard& hazard) {
 
 /// At the moment from which it is held to the hazard the vehicle is inside, or no turn misses it.
 std::optional<Excused> excused(const Recording& recorded, const VehicleSpec* vehicle,
-                               const KnownHazard& known, const Held& held, const Limits& limits) {
+                               const TimedHazard& known, const Held& held, const Limits& limits) {
   if (held.always || vehicle == nullptr) return std::nullopt;
   const auto& track = recorded.track;
   std::size_t i = first_at(track, held.from);
@@ -178,7 +178,7 @@ std::optional<Excused> excused(const Recording& recorded, const VehicleSpec* veh
   return Excused{entry.time, entry.time + from_seconds(out_s + limits.hazard_leaving_s)};
 }
 
-void judge_plan(const Recording& recorded, std::size_t index, const KnownHazard& known,
+void judge_plan(const Recording& recorded, std::size_t index, const TimedHazard& known,
                 const Held& held, const std::optional<Excused>& excuse, CheckResult& result) {
   const PlanRecord& plan = recorded.plans[index];
   const double length = plan_length_m(plan.plan);
@@ -235,7 +235,7 @@ struct Stay {
 
 /// The least clearance of the track outside what is excused, metres; negative inside.
 Worst judge_track(const RunRecord& record, const Limits& limits, const Recording& recorded,
-                  const KnownHazard& known, const Held& held, const std::optional<Excused>& excuse,
+                  const TimedHazard& known, const Held& held, const std::optional<Excused>& excuse,
                   CheckResult& result) {
   ++result.judged;
   Worst nearest{.value = std::numeric_limits<double>::infinity(), .at = {}};
@@ -290,7 +290,7 @@ CheckResult check_hazards(const RunRecord& record, const Limits& limits) {
   Worst least{.value = std::numeric_limits<double>::infinity(), .at = {}};
   for (const Recording& recorded : record.recordings) {
     const VehicleSpec* vehicle = spec_of(record, recorded.vehicle);
-    for (const KnownHazard& known : record.hazards) {
+    for (const TimedHazard& known : record.hazards) {
       const auto from = held(record, recorded, known, limits);
       if (!from) continue;
       const auto excuse = excused(recorded, vehicle, known, *from, limits);

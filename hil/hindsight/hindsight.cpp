@@ -41,9 +41,7 @@ CoupledProblem problem_of(const checks::RunRecord& record, const std::vector<Sit
   problem.sites = sites;
   problem.open_tasks = planning::tasks_of(sites);
   // One that appears later was in nobody's way before: no bound of all flights may heed it.
-  for (const auto& known : record.hazards) {
-    if (known.known_from <= Instant{}) problem.hazards.push_back(known.hazard);
-  }
+  problem.hazards = hazards_known_at(record.hazards, Instant{});
   problem.weights = {1.0, 0.0};
   return problem;
 }

@@ -63,11 +63,7 @@ Aircraft::Aircraft(const TeamMission& mission, const SimulatedVehicle& what, Ran
 void Aircraft::take_off(Instant now) {
   body_ = body_of(mission_, what_, gusts_, now);
   see_state(now);
-  std::vector<Hazard> known;
-  for (const auto& h : mission_.hazards) {
-    if (h.known_from <= now) known.push_back(h.hazard);
-  }
-  start_program(known, now);
+  start_program(hazards_known_at(mission_.hazards, now), now);
 }
 
 mission::VehicleNodeConfig Aircraft::config(const std::vector<Hazard>& hazards) const {

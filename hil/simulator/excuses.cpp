@@ -59,7 +59,7 @@ bool is_withdrawn(const checks::RunRecord& record, const Site& site) {
 }
 
 bool is_covered(const checks::RunRecord& record, const Site& site) {
-  return std::ranges::any_of(record.hazards, [&site](const checks::KnownHazard& known) {
+  return std::ranges::any_of(record.hazards, [&site](const TimedHazard& known) {
     return (known.hazard.centre - site.position).norm() < known.hazard.radius_m;
   });
 }

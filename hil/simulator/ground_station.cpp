@@ -37,12 +37,9 @@ mission::GroundNodeConfig node_config(const TeamMission& mission) {
   node.detections = taken_at_once();
   if (mission.formation && mission.formation->planes) {
     std::vector<VehicleSpec> planes;
-    std::vector<Hazard> hazards;
     for (const auto& v : mission.vehicles) planes.push_back(v.spec);
-    for (const auto& h : mission.hazards) {
-      if (h.known_from <= Instant{}) hazards.push_back(h.hazard);
-    }
-    node.tracks = groundstation::track_ground(*mission.formation, planes, hazards);
+    node.tracks = groundstation::track_ground(*mission.formation, planes,
+                                              hazards_known_at(mission.hazards, Instant{}));
   } else if (mission.formation) {
     node.formation = groundstation::formation_ground(*mission.formation, formation_of(mission));
   }

@@ -193,9 +193,7 @@ void take_over(const TeamMission& mission, configuration::Scenario& scenario) {
   for (std::size_t i = 0; i < scenario.vehicles.size(); ++i) {
     scenario.vehicles[i].spec.range_m = mission.vehicles[i].spec.range_m;
   }
-  for (std::size_t i = scenario.hazards.size(); i < mission.hazards.size(); ++i) {
-    scenario.hazards.push_back({mission.hazards[i].hazard, mission.hazards[i].known_from});
-  }
+  scenario.hazards = mission.hazards;
   scenario.operator_decisions.clear();
   for (const auto& d : mission.decisions) {
     scenario.operator_decisions.push_back({d.site, d.grant, d.reaction, d.not_before});

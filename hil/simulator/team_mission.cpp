@@ -131,7 +131,7 @@ TeamMission team_mission(const configuration::Scenario& scenario) {
   if (scenario.flies_formation()) team.formation = scenario.formation;
   if (scenario.formation.planes) team.place_rms_m = scenario.expect.place_rms_m;
   team.sites = scenario.sites;
-  for (const auto& h : scenario.hazards) team.hazards.push_back({h.hazard, h.known_from});
+  team.hazards = scenario.hazards;
   team.fence = scenario.fence;
   team.protocol = scenario.protocol;
   team.traffic = scenario.traffic;

@@ -10,7 +10,7 @@ namespace skein::hil {
 TeamRecorder::TeamRecorder(const TeamMission& mission, const TeamObserver& watcher)
     : watcher_{watcher}, healing_{healing_of(mission.faults)} {
   record_.sites = mission.sites;
-  for (const auto& h : mission.hazards) record_.hazards.push_back({h.hazard, h.known_from});
+  record_.hazards = mission.hazards;
   record_.fence = mission.fence;
   for (const auto& v : mission.vehicles) {
     record_.vehicles.push_back(v.spec);

@@ -105,9 +105,7 @@ class Team {
     stands_until_.resize(programs, Instant::min());
     give_back_at_.resize(vehicles_.size(), Instant::max());
     for (GroundStation& ground : grounds_) ground.start(Instant{});
-    for (const auto& h : mission.hazards) {
-      if (h.known_from <= Instant{}) hazards_.push_back(h.hazard);
-    }
+    hazards_ = hazards_known_at(mission.hazards, Instant{});
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
       if (start_of(mission.faults, vehicles_[i].spec().id) == Instant{}) take_off(i, Instant{});
     }
@@ -465,8 +463,7 @@ class Team {
     hand_over_sites(finder_.look(vehicles_), now, false);
     hand_over_sites(finder_.report_due(vehicles_, now), now, true);
     for (const auto& h : mission_.hazards) {
-      if (h.known_from <= Instant{} || h.known_from > now || !told_.insert(h.hazard.id).second)
-        continue;
+      if (h.known_before() || h.known_from > now || !told_.insert(h.hazard.id).second) continue;
       hazards_.push_back(h.hazard);
       tell(now, FaultEvent::Kind::appeared, kGroundStation,
            "hazard " + std::to_string(h.hazard.id.value));
@@ -763,7 +760,7 @@ std::string describe(const TeamMission& mission) {
   text +=
       fmt::format("the mission ends at {:.2f} s at the latest\n", to_seconds(mission.duration_max));
   for (const auto& h : mission.hazards) {
-    if (h.known_from <= Instant{}) continue;
+    if (h.known_before()) continue;
     text += fmt::format("hazard {} at ({:.1f}, {:.1f}), radius {:.1f} m, appears at {:.2f} s\n",
                         h.hazard.id.value, h.hazard.centre.x(), h.hazard.centre.y(),
                         h.hazard.radius_m, to_seconds(h.known_from));

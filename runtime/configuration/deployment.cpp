@@ -92,9 +92,7 @@ std::vector<VehicleConfig> vehicle_configs(const Scenario& scenario, const Deplo
     config.planning = scenario.planning;
     config.traffic = scenario.traffic;
     config.remote_id = scenario.remote_id.of(vehicle.spec.id);
-    for (const ScenarioHazard& hazard : scenario.hazards) {
-      if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
-    }
+    config.hazards = hazards_known_at(scenario.hazards, Instant{});
     config.fence = scenario.fence;
     config.formation = scenario.formation;
     config.formation.script.clear();
@@ -120,9 +118,7 @@ GroundConfig ground_config(const Scenario& scenario, const Deployment& deploymen
   }
   config.operator_decisions = scenario.operator_decisions;
   config.site_templates = scenario.site_templates;
-  for (const ScenarioHazard& hazard : scenario.hazards) {
-    if (hazard.known_from <= Instant{}) config.hazards.push_back(hazard.hazard);
-  }
+  config.hazards = hazards_known_at(scenario.hazards, Instant{});
   config.fence = scenario.fence;
   config.console.videos = scenario.console.videos;
   config.console.port = deployment.console_port;

@@ -33,10 +33,10 @@ double range_to_the_site(const ScenarioVehicle& vehicle, const Vec2& site) {
 }
 
 /// Hazards of routes have numbers of their own.
-HazardId free_id(const std::vector<ScenarioHazard>& hazards) {
+HazardId free_id(const std::vector<TimedHazard>& hazards) {
   const auto taken = [&hazards](HazardId id) {
     return std::any_of(hazards.begin(), hazards.end(),
-                       [id](const ScenarioHazard& known) { return known.hazard.id == id; });
+                       [id](const TimedHazard& known) { return known.hazard.id == id; });
   };
   HazardId id{1};  // of the 65,535 there are, a mission file takes a few hundred
   while (taken(id)) ++id.value;
@@ -74,12 +74,11 @@ routes::RouteProblem route_problem(const Scenario& scenario) {
   routes::RouteProblem problem;
   problem.site = config.site;
   problem.hazards = config.hazards;
-  for (const ScenarioHazard& known : scenario.hazards) {
-    if (known.known_from > Instant{}) continue;
-    problem.hazards.push_back({.id = known.hazard.id,
+  for (const Hazard& known : hazards_known_at(scenario.hazards, Instant{})) {
+    problem.hazards.push_back({.id = known.id,
                                .kind = routes::HazardKind::keep_out,
-                               .centre = known.hazard.centre,
-                               .radius_m = known.hazard.radius_m});
+                               .centre = known.centre,
+                               .radius_m = known.radius_m});
   }
   problem.rules = config.rules;
   problem.weights = config.weights;

@@ -18,7 +18,7 @@ std::string rounded(double value) { return number_text(std::round(value * 10.0) 
 std::string milliseconds(Duration d) { return rounded(static_cast<double>(d.count()) * 1e-6); }
 std::string name(const ScenarioVehicle& v) { return "vehicle " + std::to_string(v.spec.id.value); }
 std::string name(const Site& s) { return "site " + std::to_string(s.id.value); }
-std::string name(const ScenarioHazard& h) { return "hazard " + std::to_string(h.hazard.id.value); }
+std::string name(const TimedHazard& h) { return "hazard " + std::to_string(h.hazard.id.value); }
 std::string counted(std::size_t n, const std::string& one, const std::string& many) {
   return std::to_string(n) + " " + (n == 1 ? one : many);
 }
@@ -172,7 +172,7 @@ class Check {
               " m/s; lower the wind");
     }
     if (s_.fence.exists()) check_in_fence(v);
-    for (const ScenarioHazard& h : s_.hazards) {
+    for (const TimedHazard& h : s_.hazards) {
       if ((v.start.position() - h.hazard.centre).norm() < h.hazard.radius_m) {
         problem(name(v) + " starts inside " + name(h) + "; move one of them");
       }
@@ -297,7 +297,7 @@ class Check {
       approach_m = approach_m == 0.0 ? v.spec.final_approach_m
                                      : std::min(approach_m, v.spec.final_approach_m);
     }
-    for (const ScenarioHazard& h : s_.hazards) {
+    for (const TimedHazard& h : s_.hazards) {
       const Hazard& hazard = h.hazard;
       if ((site.position - hazard.centre).norm() < hazard.radius_m) {
         problem(name(site) + " lies inside " + name(h) + "; move one of them");

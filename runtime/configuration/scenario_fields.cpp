@@ -30,7 +30,7 @@ void radio_fields(FieldVisitor& v, RadioConfig& radio) {
            {0.0, 1e9, "bytes/s"}, radio.bytes_per_s);
 }
 
-void scenario_hazard_fields(FieldVisitor& v, ScenarioHazard& hazard) {
+void scenario_hazard_fields(FieldVisitor& v, TimedHazard& hazard) {
   hazard_fields(v, hazard.hazard);
   seconds(v, {"known_from_s", "mission time when the vehicles are told; 0: known before"}, kSeconds,
           hazard.known_from);
@@ -231,7 +231,7 @@ void fields(FieldVisitor& v, Scenario& s) {
   site_templates_list(v, s.site_templates);
   v.list({"hazards", "circles to keep out of"},
          unique_groups_of(s.hazards, kListMax, scenario_hazard_fields, "hazard",
-                          [](const ScenarioHazard& hazard) { return hazard.hazard.id.value; }));
+                          [](const TimedHazard& hazard) { return hazard.hazard.id.value; }));
   fence_section(v, s.fence);
   operator_decisions_list(v, s.operator_decisions);
   formation_section(v, s.formation);

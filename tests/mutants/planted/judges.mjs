@@ -152,8 +152,8 @@ export default [
     slip: 'the best that could have been flown flies through hazards',
     promise: 'a mission is compared with what could have been flown',
     file: 'hil/hindsight/hindsight.cpp',
-    from: 'if (known.known_from <= Instant{}) problem.hazards',
-    to: 'if (known.known_from > Instant{}) problem.hazards',
+    from: 'hazards_known_at(record.hazards, Instant{})',
+    to: 'hazards_known_at(record.hazards, Instant::min())',
   },
   {
     name: 'hindsight-from-the-end',

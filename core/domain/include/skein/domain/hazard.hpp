@@ -5,9 +5,28 @@
 #include <set>
 #include <vector>
 
+#include "skein/base/time.hpp"
 #include "skein/idl/domain.hpp"
 
 namespace skein {
+
+/// A hazard, and from when on the team knows of it: from before the mission at the epoch.
+struct TimedHazard {
+  Hazard hazard;
+  Instant known_from{};
+
+  [[nodiscard]] bool known_before() const { return known_from <= Instant{}; }
+};
+
+/// Those that are known at `now`; at the epoch: those known before the mission.
+[[nodiscard]] inline std::vector<Hazard> hazards_known_at(const std::vector<TimedHazard>& all,
+                                                          Instant now) {
+  std::vector<Hazard> known;
+  for (const TimedHazard& one : all) {
+    if (one.known_from <= now) known.push_back(one.hazard);
+  }
+  return known;
+}
 
 /// The hazards that a node knows. One does not change, and what was withdrawn does not come back.
 class KnownHazards {

@@ -18,12 +18,6 @@
 
 namespace skein::checks {
 
-/// A hazard, and from when on the vehicles are held to it.
-struct KnownHazard {
-  Hazard hazard;
-  Instant known_from{};
-};
-
 /// A vehicle's program ended during the mission, on purpose; what the vehicle did then is unknown.
 struct AgentEnd {
   VehicleId vehicle;
@@ -66,7 +60,7 @@ struct RouteEnd {
 /// A finished mission: what it was to be, and what was recorded of it.
 struct RunRecord {
   std::vector<Site> sites;
-  std::vector<KnownHazard> hazards;
+  std::vector<TimedHazard> hazards;
   Fence fence = {};
   std::vector<VehicleSpec> vehicles;
   std::vector<recording::Recording> recordings;   ///< of vehicles, in any order

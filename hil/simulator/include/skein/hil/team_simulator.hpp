@@ -52,12 +52,6 @@ struct SimulatedVehicle {
   [[nodiscard]] VehicleId number() const { return flies_as.value_or(spec.id); }
 };
 
-/// A hazard and when it comes into being; everyone is told then.
-struct TimedHazard {
-  Hazard hazard;
-  Instant known_from{};
-};
-
 /// A whole mission in virtual time.
 struct TeamMission {
   std::vector<SimulatedVehicle> vehicles;

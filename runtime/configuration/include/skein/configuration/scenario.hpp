@@ -55,11 +55,6 @@ struct ScenarioVehicle {
   FlightControllerConfig flight_controller;  ///< its wind is the scenario's
 };
 
-struct ScenarioHazard {
-  Hazard hazard;
-  Instant known_from{};  ///< at the epoch: known before the mission
-};
-
 enum class FaultKind : std::uint8_t { kill_vehicle, partition, loss, flood, battery };
 
 /// Something that goes wrong.
@@ -137,7 +132,7 @@ struct Scenario {
   std::vector<ScenarioVehicle> vehicles;
   std::vector<Site> sites;
   std::vector<SiteTemplate> site_templates;  ///< for the ground station
-  std::vector<ScenarioHazard> hazards;
+  std::vector<TimedHazard> hazards;
   Fence fence;
   std::vector<OperatorDecision> operator_decisions;
   FormationConfig formation;
