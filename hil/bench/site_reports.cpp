@@ -30,9 +30,13 @@ std::vector<mission::SiteReport> SiteReports::look(const Team& team) {
 
 std::vector<mission::SiteReport> SiteReports::report_unattended(const Team& team) {
   std::vector<mission::SiteReport> reports;
+  // As the ground station, to nobody that its pilot has, or that is on its way home.
   const auto attends = [&team](VehicleId id) {
     const auto at = team.find(id);
-    return at != team.end() && !is_barred(at->second);
+    if (at == team.end() || is_barred(at->second)) return false;
+    const mission::Activity does = at->second.activity;
+    return does != mission::Activity::holding && does != mission::Activity::landing &&
+           does != mission::Activity::landed;
   };
   for (const Site& site : sites_) {
     if (answered_.done(site.id) || std::ranges::any_of(answered_.knowing(site.id), attends)) {

@@ -35,8 +35,8 @@ class SiteReports {
     static_cast<void>(answered_.on_program_end(vehicle, sites_));
   }
   [[nodiscard]] std::vector<mission::SiteReport> look(const Team& team);
-  /// Of what nobody there knows who takes part, each to the nearest that can survey; again until
-  /// one has said that it knows.
+  /// Of what nobody there knows who takes part and is not held, each to the nearest that can
+  /// survey; again until one has said that it knows.
   [[nodiscard]] std::vector<mission::SiteReport> report_unattended(const Team& team);
 
  private:

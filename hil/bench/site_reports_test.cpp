@@ -53,6 +53,18 @@ TEST(SiteReports, WhatWasSaidToAProgramThatDidNotHearItIsSaidAgain) {
   EXPECT_TRUE(reports.report_unattended(team).empty());
 }
 
+TEST(SiteReports, WhatOnlyOneKnowsWhomItsPilotHasIsSaidToAnother) {
+  SiteReports reports{one_site()};
+  SiteReports::Team team{{kNear, at(500.0)}, {kFar, at(5000.0)}};
+  ASSERT_EQ(reports.report_unattended(team).size(), 1U);
+  reports.on_event(detected(kNear));
+  EXPECT_TRUE(reports.report_unattended(team).empty());
+  team[kNear].activity = mission::Activity::holding;
+  const auto again = reports.report_unattended(team);
+  ASSERT_EQ(again.size(), 1U);
+  EXPECT_EQ(again[0].finder, kFar);
+}
+
 TEST(SiteReports, WhatNobodyKnowsAnyMoreIsFoundAnew) {
   SiteReports reports{one_site()};
   ASSERT_EQ(reports.look({{kNear, at(50.0)}}).size(), 1U);
