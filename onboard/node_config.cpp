@@ -19,7 +19,7 @@ mission::FormationAgentConfig formation_agent(const configuration::VehicleConfig
   agent.limits = config.formation.limits;
   agent.avoidance = config.formation.avoidance;
   agent.passage.tolerance_m = config.formation.tracking_m;
-  agent.passage.silent_after = config.protocol.message_delay + 2 * formation::kSlot;
+  agent.passage.silent_after = formation::silent_after(config.protocol.message_delay);
   return agent;
 }
 

@@ -178,11 +178,15 @@ void Passage::look_for_silence() {
 bool Passage::is_in_column(std::uint32_t mover, Grains own_from, Grains own_to,
                            double apart_m) const {
   const Other& other = others_[mover];
-  // It flew on for as long as it is not called silent, at full rate, and then braked.
-  const Grains to = other.done + Grains{2} * full_ * silent_after_ + Grains{full_} * full_;
+  // It flew on until it is called silent, at full rate, and then braked.
+  const auto called_after = silent_after_ + static_cast<std::int64_t>(block_look_at_.size());
+  const Grains to = other.done + Grains{2} * full_ * called_after + Grains{full_} * full_;
   return !keeps_clear(Clearance::column, mover, own_from, own_to, other.done, std::min(end_, to),
-                      apart_m + other.off_m + off_m_);
+                      apart_m);
 }
+
+/// Beyond what is allowed for in the separation.
+double Passage::both_off_m(std::uint32_t mover) const { return others_[mover].off_m + off_m_; }
 
 Passage::Grains Passage::stop_of(const Future& future) const {
   return std::min(end_, future.at(future.stops_after()));
@@ -192,29 +196,31 @@ Passage::Grains Passage::stop_of(const Future& future) const {
 /// way.
 std::optional<Passage::Grains> Passage::way_out_of_column(std::uint32_t mover, Grains stop) const {
   const Other& other = others_[mover];
-  const double apart_m = other.apart_m + other.off_m + off_m_;
+  const double off_m = both_off_m(mover);
   Grains from = done_;
   for (std::int64_t slots = 1; slots <= kOutWithin && from < end_; ++slots) {
     const Grains at = std::min(end_, from + Grains{2} * full_);
     if (!keeps_clear(Clearance::vehicle, mover, from, at, at_least(other, slot_ + slots - 1), at,
-                     apart_m)) {
+                     other.apart_m + off_m)) {
       return std::nullopt;
     }
-    if (at >= stop && !is_in_column(mover, at, at, separation_m_)) return at;
+    if (at >= stop && !is_in_column(mover, at, at, separation_m_ + off_m)) return at;
     from = at;
   }
   return std::nullopt;
 }
 
 /// A stop at its edge, where there is less room than for what both may be off, is better than a way
-/// through it.
-bool Passage::leaves_column(std::uint32_t mover) const {
+/// through its core.
+bool Passage::goes_on_through_column(std::uint32_t mover) const {
   const Grains stop = stop_of({done_, rate_, next_rate_});
-  if (!is_in_column(mover, done_, stop, separation_m_)) return false;
+  const double off_m = both_off_m(mover);
+  if (!is_in_column(mover, done_, stop, separation_m_ + off_m)) return false;
   const auto out = way_out_of_column(mover, stop);
   if (!out) return false;
-  const double within_m = separation_m_ - 2.0 * params_.tolerance_m;
-  return is_in_column(mover, done_, stop, within_m) || !is_in_column(mover, done_, *out, within_m);
+  const double core_m = separation_m_ - 2.0 * params_.tolerance_m;
+  return is_in_column(mover, done_, stop, core_m) ||
+         !is_in_column(mover, done_, *out, core_m + off_m);
 }
 
 /// All but those that cannot be avoided any more and are left where the way leads on.
@@ -222,7 +228,7 @@ void Passage::look_for_columns() {
   look_for_silence();
   columns_.clear();
   std::ranges::copy_if(silent_, std::back_inserter(columns_),
-                       [&](std::uint32_t mover) { return !leaves_column(mover); });
+                       [&](std::uint32_t mover) { return !goes_on_through_column(mover); });
 }
 
 /// Far away, it cannot matter for as long as both would need to meet.
@@ -280,7 +286,7 @@ void Passage::decide() {
     const Future future{done_, rate_, rate};
     if (!clear_of_all(future)) return false;
     const auto column = std::ranges::find_if(columns_, [&](std::uint32_t mover) {
-      return is_in_column(mover, done_, stop_of(future), separation_m_);
+      return is_in_column(mover, done_, stop_of(future), separation_m_ + both_off_m(mover));
     });
     if (column != columns_.end()) {
       waits_for_ = *column;

@@ -54,7 +54,7 @@ struct Team {
     change.number = 1;
     change.start = at_seconds(1.0);
     PassageParams params;
-    params.silent_after = network.delay + 2 * kSlot;
+    params.silent_after = silent_after(network.delay);
     for (std::size_t i = 0; i < change.movers.size(); ++i) {
       vehicles.emplace_back(change, i, params, now);
       clock.push_back(from_seconds(random.uniform(-0.01, 0.01)));
@@ -264,8 +264,8 @@ TEST(Passage, AColumnThatIsLeftIsNoLeaveToEnterAnother) {
   EXPECT_EQ(below.waits_for(), 1U);
 }
 
-/// One that flies along a line, 3 s to the other end, under one that stands 1 m beside its middle,
-/// and is heard until the first is at `silent_at_m`.
+/// One that flies along a line under one that climbs 1 m beside its middle, and is heard until the
+/// first is at `silent_at_m`.
 struct UnderASilentOne {
   explicit UnderASilentOne(double silent_at_m) {
     const auto planned =

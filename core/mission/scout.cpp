@@ -13,6 +13,8 @@ constexpr Duration kSurveyPeriod = std::chrono::seconds{5};  ///< between attemp
 constexpr Duration kReliefPeriod = std::chrono::seconds{1};  ///< between two looks for lost sites
 /// Who goes to lead a lost site goes around it at this times its planning radius at least.
 constexpr double kReliefRadiusFactor = 1.2;
+/// Between two that may lead a site that both have come to relieve.
+constexpr Duration kTurn = std::chrono::milliseconds{500};
 constexpr std::size_t kFoundMax = 16;
 
 TaskId survey_of(const Site& site) { return {site.id, TaskKind::survey, 0}; }
@@ -51,7 +53,7 @@ void Scout::report_detected(const Site& site, Instant now) {
   outbox_.report(event::SiteDetected{range}, {}, survey_of(site), now);
 }
 
-bool Scout::withdraw(SiteId site, Instant now) {
+bool Scout::withdraw(SiteId site, bool turns_away, Instant now) {
   if (!withdrawn_.insert(site).second) return false;
   known_.insert(site);
   sites_.forget(site);
@@ -59,7 +61,7 @@ bool Scout::withdraw(SiteId site, Instant now) {
   std::erase_if(surveyed_, [site](const Surveyed& s) { return s.site.id == site; });
   if (flying() && site_.id == site) {
     fire(Event::called_off);
-    ownship_.search(now);
+    if (turns_away) ownship_.search(now);
   }
   return true;
 }
@@ -179,6 +181,7 @@ void Scout::take_up_relief(Instant now) {
     outbox_.report(event::ReliefBegun{lost->heard_at}, {}, {lost->site.id, {}, 0}, now);
     site_ = lost->site;
     plan_ = *plan;
+    waited_ = false;
     fire(Event::relief_planned);
     return;
   }
@@ -258,7 +261,9 @@ std::optional<SurveyedSite> Scout::survey(Instant now) {
   return SurveyedSite{site_, {}};
 }
 
+/// Several may have waited for the same award: the announcement of the first calls the others off.
 std::optional<SurveyedSite> Scout::relieve(Instant now) {
+  if (std::exchange(waited_, false)) in_turn_at_ = now + rank() * kTurn;
   const auto* lost = sites_.lost(site_.id, unheard_since(now));
   if (lost == nullptr) {  // its leader was heard, or nothing is left to do
     fire(Event::called_off);
@@ -266,7 +271,7 @@ std::optional<SurveyedSite> Scout::relieve(Instant now) {
     return std::nullopt;
   }
   if (machine_.in(State::to_relief) && now >= arrival()) fire(Event::arrived);
-  if (now < arrival() + ownship_.config().protocol.silence) return std::nullopt;
+  if (now < leads_at()) return std::nullopt;
   fire(Event::ended);
   return SurveyedSite{lost->site, lost->over};
 }
@@ -280,16 +285,23 @@ void Scout::call_off() {
 /// The stagger lets one of several free vehicles go first; its announcement calls the others off.
 Instant Scout::unheard_since(Instant now) const {
   constexpr Duration kStagger = std::chrono::seconds{2};
+  return now - ownship_.config().protocol.cut_max - rank() * kStagger;
+}
+
+int Scout::rank() const {
   constexpr int kRanks = 8;
-  const auto& config = ownship_.config();
-  return now - config.protocol.cut_max - config.vehicle.id.value % kRanks * kStagger;
+  return ownship_.spec().id.value % kRanks;
 }
 
 Instant Scout::arrival() const { return plan_.timed.time_at(plan_.gate_m); }
 
+Instant Scout::leads_at() const {
+  return std::max(arrival() + ownship_.config().protocol.silence, in_turn_at_);
+}
+
 Instant Scout::next_timeout() const {
   if (!flying()) return Instant::max();
-  if (machine_.in(State::listening)) return arrival() + ownship_.config().protocol.silence;
+  if (machine_.in(State::listening)) return leads_at();
   return machine_.in(State::surveying) ? plan_.timed.end_time() : arrival();
 }
 

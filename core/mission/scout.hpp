@@ -54,7 +54,8 @@ class Scout {
   /// again that it has taken it up. Precondition: it is not withdrawn.
   void on_site_report(const SiteReport& message, Instant now);
   /// The operator has withdrawn it: it is forgotten for good. False where that is known.
-  bool withdraw(SiteId site, Instant now);
+  /// `turns_away`: at once, if it is on its way there, and not when its plan ends.
+  bool withdraw(SiteId site, bool turns_away, Instant now);
   [[nodiscard]] bool is_withdrawn(SiteId site) const { return withdrawn_.contains(site); }
   /// What others say of the sites that they lead, or this vehicle itself.
   void on_message(const coalition::Message& message, Instant now);
@@ -76,12 +77,14 @@ class Scout {
   [[nodiscard]] Instant takes_up_at() const;
   /// Goes on with what it took up. A site to lead now, when that has ended with one.
   [[nodiscard]] std::optional<SurveyedSite> fly(Instant now);
+  /// In place of fly() while a bid for another site is out: nothing is led before that is decided.
+  void wait() { waited_ = true; }
   /// The vehicle has to do something else: what it was to survey waits again.
   void call_off();
 
   [[nodiscard]] State state() const { return machine_.state(); }
   [[nodiscard]] bool flying() const { return !machine_.in(State::idle); }
-  /// That is a task, for which others wait. A relief gives way to any.
+  /// A survey is a task; a relief is none, and gives way to any.
   [[nodiscard]] bool surveys() const {
     return machine_.in(State::to_survey) || machine_.in(State::surveying);
   }
@@ -118,6 +121,8 @@ class Scout {
   [[nodiscard]] std::optional<SurveyedSite> relieve(Instant now);
   [[nodiscard]] Instant unheard_since(Instant now) const;
   [[nodiscard]] Instant arrival() const;
+  [[nodiscard]] Instant leads_at() const;
+  [[nodiscard]] int rank() const;
 
   Ownship& ownship_;
   Outbox& outbox_;
@@ -125,6 +130,8 @@ class Scout {
   Site site_;                   ///< unless idle: that it flies to
   planning::TaskPlan plan_;     ///< of that flight
   bool strayed_ = false;        ///< from the arc of its survey (Ownship::on_arc)
+  bool waited_ = false;         ///< since relieve() last looked
+  Instant in_turn_at_{};        ///< to lead what it relieves, after that
   std::set<SiteId> known_;      ///< found or announced by anybody
   std::set<SiteId> withdrawn_;  ///< by the operator
   std::vector<Found> found_;    ///< found here, waiting to be surveyed

@@ -137,8 +137,8 @@ TEST(Scout, WhatIsWithdrawnIsForgottenForGood) {
   s.find(test_site(1));
   EXPECT_FALSE(s.scout.take_up(s.now));
   ASSERT_EQ(s.scout.state(), State::to_survey);
-  EXPECT_TRUE(s.scout.withdraw({1}, s.now));
-  EXPECT_FALSE(s.scout.withdraw({1}, s.now)) << "it is told again and again";
+  EXPECT_TRUE(s.scout.withdraw({1}, true, s.now));
+  EXPECT_FALSE(s.scout.withdraw({1}, true, s.now)) << "it is told again and again";
   EXPECT_EQ(s.scout.state(), State::idle);
   EXPECT_TRUE(s.ownship.flight().searching());
   (void)s.reported(EventKind::site_detected);
@@ -150,7 +150,7 @@ TEST(Scout, WhatIsWithdrawnIsForgottenForGood) {
   // Nor is it relieved, whether it was known before or is announced afterwards.
   s.is_announced(test_site(1));
   s.is_announced(test_site(2));
-  EXPECT_TRUE(s.scout.withdraw({2}, s.now));
+  EXPECT_TRUE(s.scout.withdraw({2}, true, s.now));
   s.be_at(200.0);
   EXPECT_FALSE(s.scout.take_up(s.now));
   EXPECT_EQ(s.scout.state(), State::idle);
@@ -286,11 +286,43 @@ TEST(Scout, OnItsWayToRelieveASiteItBidsForAnother) {
 TEST(Scout, WhoWasNotAwardedWhatItBidForRelievesItsSite) {
   Relieving vehicle;
   const std::uint32_t plan = vehicle.plan.number;
+  const auto bids = vehicle.count(EventKind::bid_sent);
   vehicle.call(2, 8, 1.0);
+  ASSERT_EQ(vehicle.count(EventKind::bid_sent), bids + 1);
   vehicle.award(2, 8, {8});
   for (int i = 0; i < 300 && vehicle.agent.activity() == Activity::surveying; ++i) vehicle.fly(0.5);
   EXPECT_EQ(vehicle.agent.activity(), Activity::leading);
   EXPECT_EQ(vehicle.plan.number, plan) << "one way there, whatever it bid for meanwhile";
+}
+
+TEST(Scout, WhatItRelievesIsWithdrawnAndWhatItBidHolds) {
+  Relieving vehicle;
+  const std::uint32_t plan = vehicle.plan.number;
+  vehicle.call(2, 8, 3.0);
+  vehicle.tell(SiteReport{{}, test_site(1), true});
+  EXPECT_EQ(vehicle.plan.number, plan) << "it bid from this way";
+  vehicle.fly(60.0);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::searching);
+}
+
+/// A hazard on the rest of the circle that it flies while it waits.
+TEST(Scout, WhoWaitsForItsBidCirclesClearOfWhatBecomesKnown) {
+  Relieving vehicle;
+  vehicle.call(2, 8, 120.0);
+  vehicle.fly(60.0);
+  ASSERT_EQ(vehicle.agent.activity(), Activity::surveying);
+  const TimedPath relief = vehicle.plan.timed;
+  const double half_lap_m = kPi / std::abs(relief.tail_curvature_per_m);
+  const double flown_m = relief.distance_at(vehicle.state.time);
+  const Pose2 ahead = relief.pose_at_distance(flown_m + half_lap_m);
+  const std::vector<Hazard> hazards{{HazardId{1}, ahead.position(), 20.0}};
+  vehicle.tell(HazardReport{hazards.front()});
+  vehicle.fly(0.5);
+  const TimedPath& after = vehicle.plan.timed;
+  const double lap_m = kTwoPi / std::abs(after.tail_curvature_per_m);
+  const auto orbit = after.piece(0.0, after.path.length_m() + lap_m);
+  ASSERT_TRUE(orbit);
+  EXPECT_TRUE(planning::is_clear(*orbit, hazards));
 }
 
 TEST(Scout, LeadsNothingBeforeWhatItBidForIsDecided) {

@@ -79,8 +79,10 @@ void VehicleAgent::Impl::step(Instant now) {
   leader_.repeat(now);
   pump(now);
   flyer_.fly(now);
-  if (flyer_.free()) {  // who has bid on its way to relieve a site leads none before it knows
-    if (const auto site = scout_.fly(now)) leader_.lead(*site, now);
+  if (!flyer_.free()) {  // on its way to relieve a site it may have bid for another
+    scout_.wait();
+  } else if (const auto site = scout_.fly(now)) {
+    leader_.lead(*site, now);
   }
   pump(now);
   watch_range(now);
@@ -176,7 +178,7 @@ void VehicleAgent::Impl::on_authorisation(const Authorisation& message, Instant 
 void VehicleAgent::Impl::on_site(const SiteReport& message, Instant now) {
   if (!message.withdrawn) return scout_.on_site_report(message, now);
   const SiteId site = message.site.id;
-  if (!scout_.withdraw(site, now)) return;
+  if (!scout_.withdraw(site, flyer_.free(), now)) return;  // what it has bid holds from its way
   relay_.close(site);
   leader_.withdraw(site, now);
   say_last_words(now);
@@ -185,8 +187,8 @@ void VehicleAgent::Impl::on_site(const SiteReport& message, Instant now) {
 
 /// Nothing to do: search on, or take up a site that waits.
 void VehicleAgent::Impl::idle(Instant now) {
-  if (failsafe_.holds_still() || flyer_.flying() || scout_.flying()) return;
-  if (ownship_.flight().en_route(now)) return;
+  if (failsafe_.holds_still() || flyer_.flying()) return;
+  if (ownship_.flight().en_route(now) || (scout_.flying() && flyer_.free())) return;
   if (ownship_.flight().poll_orbit_barred() && !ownship_.keeps_clear(now)) ownship_.hold(now);
   if (!flyer_.free()) return;
   if (failsafe_.in(Failsafe::Action::come_home)) {

@@ -74,8 +74,8 @@ export default [
     slip: 'a silent vehicle\'s column ends where it was called silent, without the way it brakes in',
     promise: 'nobody passes below who may sink',
     file: passage,
-    from: 'const Grains to = other.done + Grains{2} * full_ * silent_after_ + Grains{full_} * full_;',
-    to: 'const Grains to = other.done + Grains{2} * full_ * silent_after_;',
+    from: 'const Grains to = other.done + Grains{2} * full_ * called_after + Grains{full_} * full_;',
+    to: 'const Grains to = other.done + Grains{2} * full_ * called_after;',
   },
   {
     name: 'column-without-who-is-above',

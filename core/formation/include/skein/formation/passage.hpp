@@ -12,11 +12,16 @@
 
 namespace skein::formation {
 
+/// For how long one that is there may not be heard, counted from the slot that its last word is of:
+/// where that message took longest, until two more.
+[[nodiscard]] constexpr Duration silent_after(Duration message_delay) {
+  return message_delay + 2 * kSlot;
+}
+
 struct PassageParams {
   Duration clock_error = std::chrono::milliseconds{20};  ///< between any two vehicles
   double tolerance_m = 0.5;  ///< Progress::off_m up to which Change::separation allows for it
-  /// Who is not heard for so long may have lost its program.
-  Duration silent_after = std::chrono::milliseconds{300};
+  Duration silent_after = formation::silent_after(std::chrono::milliseconds{200});
 };
 
 /// Flies one vehicle's part of a change so that separation holds however late others are and
@@ -35,7 +40,8 @@ struct PassageParams {
 ///
 /// Who is silent may have lost its program and come down: nobody enters the column below where it
 /// may be; who cannot stop before it, or is in it, goes on where its way soon leads out, and stops
-/// where not. So does who would stop at its edge, where all is kept but what both may be off.
+/// where not. Who would stop at its edge, where all is kept but what both may be off, stops there,
+/// unless its way leads out without coming nearer.
 ///
 /// step() and reference() allocate nothing.
 class Passage final : public Execution {
@@ -102,7 +108,8 @@ class Passage final : public Execution {
                                   double apart_m) const;
   [[nodiscard]] Grains stop_of(const Future& future) const;
   [[nodiscard]] std::optional<Grains> way_out_of_column(std::uint32_t mover, Grains stop) const;
-  [[nodiscard]] bool leaves_column(std::uint32_t mover) const;
+  [[nodiscard]] bool goes_on_through_column(std::uint32_t mover) const;
+  [[nodiscard]] double both_off_m(std::uint32_t mover) const;
   void look_at_block(std::size_t block, std::int32_t current);
   void look_again(std::size_t mover, Grains at_least_now);
   void decide();
