@@ -34,10 +34,8 @@ bool is_to_survey(const GroundSite& entry) {
 
 bool can_survey(const FleetEntry& known) {
   if (!known.telemetry || known.silent || known.duplicate || known.differs) return false;
-  const Activity activity = known.telemetry->activity;
-  const bool works = activity != Activity::holding && activity != Activity::forming &&
-                     activity != Activity::landing && activity != Activity::landed;
-  return works && known.telemetry->capabilities.has(TaskKind::survey);
+  return can_be_told_of_sites(known.telemetry->activity) &&
+         known.telemetry->capabilities.has(TaskKind::survey);
 }
 
 }  // namespace

@@ -53,6 +53,16 @@ TEST(Scout, SurveysWhatItFindsAndSaysThatItIsToBeLed) {
   EXPECT_EQ(s.reported(EventKind::survey_done), 1);
 }
 
+/// On the orbit that it ends in.
+Hazard half_a_lap_after(const TimedPath& plan, double flown_m) {
+  const double half_lap_m = kPi / std::abs(plan.tail_curvature_per_m);
+  return {HazardId{1}, plan.pose_at_distance(flown_m + half_lap_m).position(), 20.0};
+}
+auto with_a_lap(const TimedPath& plan) {
+  const double lap_m = kTwoPi / std::abs(plan.tail_curvature_per_m);
+  return plan.piece(0.0, plan.path.length_m() + lap_m);
+}
+
 /// A survey is flown to its end where a hazard has become known on the orbit behind it; who then
 /// leads the site would circle on there.
 TEST(Scout, WhoLeadsCirclesClearOfWhatBecameKnownDuringItsSurvey) {
@@ -63,17 +73,13 @@ TEST(Scout, WhoLeadsCirclesClearOfWhatBecameKnownDuringItsSurvey) {
   for (int i = 0; i < 600 && activity() != Activity::surveying; ++i) vehicle.fly(0.5);
   ASSERT_EQ(activity(), Activity::surveying);
   const TimedPath survey = vehicle.plan.timed;
-  const double half_lap_m = kPi / std::abs(survey.tail_curvature_per_m);
-  const Pose2 on_orbit = survey.pose_at_distance(survey.path.length_m() + half_lap_m);
-  const std::vector<Hazard> hazards{{HazardId{1}, on_orbit.position(), 20.0}};
+  const std::vector<Hazard> hazards{half_a_lap_after(survey, survey.path.length_m())};
   vehicle.tell(HazardReport{hazards.front()});
   EXPECT_EQ(vehicle.plan.timed.path.length_m(), survey.path.length_m()) << "it is flown on";
   for (int i = 0; i < 600 && activity() == Activity::surveying; ++i) vehicle.fly(0.5);
   ASSERT_EQ(activity(), Activity::leading);
   vehicle.fly(0.5);
-  const TimedPath& after = vehicle.plan.timed;
-  const double lap_m = kTwoPi / std::abs(after.tail_curvature_per_m);
-  const auto orbit = after.piece(0.0, after.path.length_m() + lap_m);
+  const auto orbit = with_a_lap(vehicle.plan.timed);
   ASSERT_TRUE(orbit);
   EXPECT_TRUE(planning::is_clear(*orbit, hazards));
 }
@@ -312,15 +318,11 @@ TEST(Scout, WhoWaitsForItsBidCirclesClearOfWhatBecomesKnown) {
   vehicle.fly(60.0);
   ASSERT_EQ(vehicle.agent.activity(), Activity::surveying);
   const TimedPath relief = vehicle.plan.timed;
-  const double half_lap_m = kPi / std::abs(relief.tail_curvature_per_m);
   const double flown_m = relief.distance_at(vehicle.state.time);
-  const Pose2 ahead = relief.pose_at_distance(flown_m + half_lap_m);
-  const std::vector<Hazard> hazards{{HazardId{1}, ahead.position(), 20.0}};
+  const std::vector<Hazard> hazards{half_a_lap_after(relief, flown_m)};
   vehicle.tell(HazardReport{hazards.front()});
   vehicle.fly(0.5);
-  const TimedPath& after = vehicle.plan.timed;
-  const double lap_m = kTwoPi / std::abs(after.tail_curvature_per_m);
-  const auto orbit = after.piece(0.0, after.path.length_m() + lap_m);
+  const auto orbit = with_a_lap(vehicle.plan.timed);
   ASSERT_TRUE(orbit);
   EXPECT_TRUE(planning::is_clear(*orbit, hazards));
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "skein/mission/ground_sites.hpp"
+
 namespace skein::hil {
 
 bool is_barred(const mission::Telemetry& telemetry) {
@@ -33,10 +35,8 @@ std::vector<mission::SiteReport> SiteReports::report_unattended(const Team& team
   // As the ground station, to nobody that its pilot has, or that is on its way home.
   const auto attends = [&team](VehicleId id) {
     const auto at = team.find(id);
-    if (at == team.end() || is_barred(at->second)) return false;
-    const mission::Activity does = at->second.activity;
-    return does != mission::Activity::holding && does != mission::Activity::landing &&
-           does != mission::Activity::landed;
+    return at != team.end() && !is_barred(at->second) &&
+           mission::can_be_told_of_sites(at->second.activity);
   };
   for (const Site& site : sites_) {
     if (answered_.done(site.id) || std::ranges::any_of(answered_.knowing(site.id), attends)) {

@@ -16,6 +16,12 @@
 
 namespace skein::mission {
 
+/// Whoever does that can be told of a site: nobody holds it, and it is not about to land.
+[[nodiscard]] constexpr bool can_be_told_of_sites(Activity does) {
+  return does != Activity::holding && does != Activity::forming && does != Activity::landing &&
+         does != Activity::landed;
+}
+
 /// How far a site has come, as far as the ground station has heard.
 enum class SiteState : std::uint8_t {
   waits,     ///< of the operator: nobody can survey it now
