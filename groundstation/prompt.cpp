@@ -277,9 +277,12 @@ Result<Input> take_command(std::string_view line, const std::vector<std::string_
   if (words.size() < 2 || words[1] != "command") {
     return Error{"'take' takes the command: 'take command', and why, for the others"};
   }
-  const auto end = words.back().data() + words.back().size();
-  const std::string_view reason =
-      words.size() == 2 ? "" : line.substr(words[2].data() - line.data(), end - words[2].data());
+  const auto place = [&](const char* of) { return static_cast<std::size_t>(of - line.data()); };
+  const std::string_view last = words.back();
+  const auto reason =
+      words.size() == 2
+          ? std::string_view{}
+          : line.substr(0, place(last.data()) + last.size()).substr(place(words[2].data()));
   return Input{TakeCommand{as_text(reason, kReasonMax)}};
 }
 

@@ -544,8 +544,9 @@ double TransitLengths::none_before_m(double length_m, bool exactly) {
       gap = Unflyable{beyond_m, beyond_m};
     }
   }
-  const auto is_enough = [&] { return !exactly && gap->end_m() > beyond_m + kExact_m; };
-  while (!gap->is_settled() && !is_enough()) search.narrow(*gap, length_max_m_ - out_m);
+  while (!gap->is_settled() && (exactly || gap->end_m() <= beyond_m + kExact_m)) {
+    search.narrow(*gap, length_max_m_ - out_m);
+  }
   return out_m + gap->end_m();
 }
 

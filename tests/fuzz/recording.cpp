@@ -20,6 +20,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     ++written;
     return true;
   });
+  SKEIN_ASSERT(by_time == written);
   (void)log->topics();
   return 0;
 }
