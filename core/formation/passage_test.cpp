@@ -264,18 +264,10 @@ TEST(Passage, AColumnThatIsLeftIsNoLeaveToEnterAnother) {
   EXPECT_EQ(below.waits_for(), 1U);
 }
 
-/// One that flies along a line under one that climbs 1 m beside its middle, and is heard until the
-/// first is at `silent_at_m`.
+/// One that flies along a line eastwards from the origin, under one that is heard until the first
+/// is at `silent_at_m`.
 struct UnderASilentOne {
-  explicit UnderASilentOne(double silent_at_m) {
-    const auto planned =
-        plan_change({.transfers = {{{1}, {0, 0, 10}, {40, 0, 10}}, {{2}, {20, 1, 20}, {20, 1, 26}}},
-                     .keep_outs = {},
-                     .limits = kLimits,
-                     .separation = kSeparation,
-                     .reserve_m = 1.0});
-    SKEIN_ASSERT(planned.ok());
-    Change change = planned->change;
+  UnderASilentOne(Change change, double silent_at_m) {
     change.number = 1;
     const PassageParams params;
     Passage below{change, 0, params, Instant{}};
@@ -304,12 +296,19 @@ struct UnderASilentOne {
 };
 
 TEST(Passage, WhoCanStopAtTheEdgeOfAColumnDoes) {
+  const auto planned =
+      plan_change({.transfers = {{{1}, {0, 0, 10}, {40, 0, 10}}, {{2}, {20, 1, 20}, {20, 1, 26}}},
+                   .keep_outs = {},
+                   .limits = kLimits,
+                   .separation = kSeparation,
+                   .reserve_m = 1.0});
+  ASSERT_TRUE(planned.ok()) << planned.error().message;
   // Of the 3 m apart, 1 m is for what both may be off.
   const double edge_m = 20.0 - std::sqrt(4.0 - 1.0);
   int stopped = 0;
   int passed = 0;
   for (double silent_at_m = 2.0; silent_at_m < 20.0; silent_at_m += 0.25) {
-    const UnderASilentOne run{silent_at_m};
+    const UnderASilentOne run{planned->change, silent_at_m};
     ASSERT_TRUE(run.would_stop_m) << silent_at_m;
     if (*run.would_stop_m < edge_m - 0.3) {
       EXPECT_TRUE(run.rests) << silent_at_m;
@@ -322,6 +321,21 @@ TEST(Passage, WhoCanStopAtTheEdgeOfAColumnDoes) {
   }
   EXPECT_GT(stopped, 20);
   EXPECT_GT(passed, 5);
+}
+
+/// That crosses the line 2.8 m above it, just before the first would: going on would end at 1.1 m
+/// from it.
+TEST(Passage, WhoseWayOutTheSilentOneItselfBarsStopsAtOnce) {
+  Change change;
+  change.limits = kLimits;
+  change.separation = kSeparation;
+  change.movers = {{{1}, {{0, 0, 10}, {40, 0, 10}}, 0},
+                   {{2}, {{20, -18.1, 12.8}, {20, 21.9, 12.8}}, 0}};
+  const UnderASilentOne run{change, 15.1};
+  const double core_m = 20.0 - 2.0;
+  ASSERT_GT(run.would_stop_m, core_m);  // where who has a way out goes on
+  EXPECT_TRUE(run.rests);
+  EXPECT_LE(run.at_m, *run.would_stop_m + 0.1);
 }
 
 TEST(Passage, HaltsAndStays) {
