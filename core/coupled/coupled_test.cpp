@@ -258,6 +258,21 @@ TEST(BranchAndBound, EqualsExhaustiveSearchWithDeliveriesTogether) {
   }
 }
 
+TEST(BranchAndBound, EqualsExhaustiveSearchWhereLongAssessmentsAreFlownAtOnce) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random{seed};
+    CoupledProblem problem =
+        draw_makespan(random, {.sites = 2, .vehicles = 4, .assessments = 2, .side_m = 12000.0});
+    std::erase_if(problem.open_tasks,
+                  [](const TaskId& task) { return task.kind == TaskKind::survey; });
+    for (Site& site : problem.sites) {
+      for (ArcRequirement& arc : site.assessments) arc.dwell = seconds{200};
+    }
+    expect_optimal(problem);
+  }
+}
+
 TEST(BranchAndBound, TwinsAreInterchangeable) {
   Random random{5};
   CoupledDraw draw;

@@ -184,6 +184,14 @@ TEST(PlanChecks, RangeIsJudgedByTrackAndByPlan) {
               HasSubstr("brings the distance flown to 6000 m"));
 }
 
+TEST(PlanChecks, WhatAPlanHasAheadComesToWhatWasFlown) {
+  RunRecord record = good_record();
+  spec(record, kFromWest).range_m = 6290.0;
+  of(record, kFromWest).plans.back().plan = plan_from({-1000.0, 0.0, 0.0}, 40.0, {{0.0, 4300.0}});
+  EXPECT_THAT(only_sentence(check_range(record, {})),
+              HasSubstr("brings the distance flown to 6300 m"));
+}
+
 TEST(PlanChecks, WhoFliesOnAnEmptyBatteryIsFound) {
   RunRecord record = good_record();
   auto& track = of(record, kAssessor).track;

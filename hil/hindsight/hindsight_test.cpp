@@ -92,6 +92,21 @@ TEST(Hindsight, WhatWasNotDoneHasNoTimeAndNoReward) {
   EXPECT_EQ(after->end_s.best, before->end_s.best) << "it does not depend on what was flown";
 }
 
+TEST(Hindsight, BeginsWhereTheVehiclesWereWhenTheMissionBegan) {
+  Flown flown = fly("coalition-6.yaml", 3);
+  const auto before = look_back(flown.record, flown.limits, 500);
+  ASSERT_TRUE(before.ok());
+  for (auto& recorded : flown.record.recordings) {
+    const auto later = std::ranges::find_if(
+        recorded.track, [](const auto& point) { return point.state.time > Instant{}; });
+    ASSERT_NE(later, recorded.track.end());
+    recorded.track.erase(later + 1, recorded.track.end());
+  }
+  const auto after = look_back(flown.record, flown.limits, 500);
+  ASSERT_TRUE(after.ok());
+  EXPECT_NEAR(after->end_s.best, before->end_s.best, 0.1);
+}
+
 TEST(Hindsight, IsATableForPeople) {
   const Flown flown = fly("coalition-6.yaml", 3);
   const auto all = look_back(flown.record, flown.limits, 500);

@@ -487,7 +487,7 @@ Result<FaultParams> fault_params(const std::string& profiles, std::uint64_t seed
   for (const std::string& name : *names) {
     if (name == "none") continue;
     all.phase = seconds{90};
-    all.bound = seconds{300};
+    all.bound = kDoneWithin;
     name == "mixed" ? mixed(all, seed) : profile_of(name).sites(all);
   }
   return all;

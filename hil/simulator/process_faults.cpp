@@ -25,7 +25,6 @@ constexpr std::uint64_t kProcessStream = 0x70726f6365737301;
 constexpr std::uint64_t kNemesisStream = 0x70726f6365737302;
 /// Real seconds: about half of the simulator's.
 constexpr Duration kPhase = seconds{40};
-constexpr Duration kBound = seconds{120};
 
 /// How much of what only processes have; counts are the most that is drawn.
 struct Params {
@@ -240,7 +239,7 @@ Result<std::vector<Fault>> spoil(configuration::Scenario& scenario, const std::s
   auto drawn = fault_params(of_simulator.empty() ? "none" : of_simulator, scenario.seed);
   if (!drawn) return drawn.error();
   drawn->phase = kPhase;
-  drawn->bound = kBound;
+  drawn->bound = kDoneWithin;
   TeamMission mission = team_mission(scenario);
   const std::size_t own = mission.faults.size();
   add_faults(mission, *drawn);

@@ -302,8 +302,11 @@ TEST(Certificates, AreRefusedForWhatIsWrongWithThem) {
   EXPECT_EQ(check(authority(), authority(), kFrom), Trust::wrong_role);
   Certificate other = good;
   other.mission.bytes[3] ^= 1U;
-  sign(other, kAuthority);
-  EXPECT_EQ(check(other, authority(), kFrom), Trust::other_mission);
+  for (const Role role : {Role::ground, Role::vehicle, Role::op}) {
+    other.role = role;
+    sign(other, kAuthority);
+    EXPECT_EQ(check(other, authority(), kFrom), Trust::other_mission) << to_text(role);
+  }
   other = good;
   sign(other, kNode.sign);
   EXPECT_EQ(check(other, authority(), kFrom), Trust::forged);

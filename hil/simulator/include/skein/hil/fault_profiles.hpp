@@ -33,6 +33,9 @@ enum class MissionKind : std::uint8_t { sites, formation };
     const std::string& list, const std::vector<std::string_view>& known,
     const std::function<std::string(const std::string& name)>& why_not);
 
+/// After the radio has healed: what can be done at all.
+inline constexpr Duration kDoneWithin = std::chrono::seconds{300};
+
 /// How much may go wrong in a mission with sites; counts and figures are the most that is drawn.
 /// Members of several profiles can be set together.
 struct FaultParams {
