@@ -77,6 +77,22 @@ TEST(Fence, HoldsPathsThatNowhereLeaveIt) {
   EXPECT_TRUE(Fence{}.holds(straight)) << "no fence";
 }
 
+TEST(Fence, APathAcrossANotchLeavesIt) {
+  // 4 m wide where the path crosses it, which begins and ends 20 m from the nearest edge.
+  const Fence fence = of({{0.0, 0.0},
+                          {200.0, 0.0},
+                          {200.0, 100.0},
+                          {104.0, 100.0},
+                          {100.0, 20.0},
+                          {96.0, 100.0},
+                          {0.0, 100.0}});
+  for (double east_m = 20.0; east_m < 60.0; east_m += 1.0) {
+    Path path{{east_m, 60.0, 0.0}, {}};
+    ASSERT_TRUE(path.append(Segment{0.0, 180.0 - east_m}));
+    EXPECT_FALSE(fence.holds(path)) << "from " << east_m;
+  }
+}
+
 TEST(Fence, OnlySimplePolygonsMakeOne) {
   EXPECT_TRUE(is_simple_polygon({{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}}));
   EXPECT_TRUE(is_simple_polygon(bent().corners));

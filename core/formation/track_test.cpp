@@ -9,6 +9,7 @@
 #include "skein/base/angles.hpp"
 #include "skein/base/random.hpp"
 #include "skein/formation/track_planner.hpp"
+#include "track_checks.hpp"
 
 namespace skein::formation {
 namespace {
@@ -131,6 +132,21 @@ TEST(TrackPlace, IsTheOffsetOfTheCurveAtEveryMoment) {
       EXPECT_LT((own.pose_at(at_seconds(t)).position() - there).norm(), 1e-5) << i << " " << t;
     }
   }
+}
+
+TEST(SampledWays, AreLookedAtToTheirLastStep) {
+  const auto straight = [](const Pose2& start) {
+    TimedPath timed;
+    timed.speed_mps = 20.0;
+    timed.path.start = start;
+    timed.path.segments.push_back({0.0, 100.0});
+    return timed;
+  };
+  SampledWays ways{Instant{}, at_seconds(2.0)};
+  ways.add(straight({0.0, 0.0, 0.0}));
+  ways.add(straight({100.0, 5.0, kPi}));
+  const double apart_m = std::hypot(20.0, 5.0);  // they have flown 40 m each
+  EXPECT_NEAR(ways.closest(0, 1, Instant{}).apart_m, apart_m - SampledWays::kMissed_m, 1e-6);
 }
 
 TEST(PlanTrack, KeepsPlanesApartAndWithinTheirLimitsOnRandomTracks) {
