@@ -273,16 +273,13 @@ Result<Input> record(const std::vector<std::string_view>& words) {
   return Input{Record{words[1] == "stop" ? std::string{} : std::string{words[1]}}};
 }
 
-Result<Input> take_command(std::string_view line, const std::vector<std::string_view>& words) {
+Result<Input> take_command(const std::vector<std::string_view>& words) {
   if (words.size() < 2 || words[1] != "command") {
     return Error{"'take' takes the command: 'take command', and why, for the others"};
   }
-  const auto place = [&](const char* of) { return static_cast<std::size_t>(of - line.data()); };
-  const std::string_view last = words.back();
-  const auto reason =
-      words.size() == 2
-          ? std::string_view{}
-          : line.substr(0, place(last.data()) + last.size()).substr(place(words[2].data()));
+  // As it was typed, blanks and all: words are views of one line.
+  const auto reason = words.size() == 2 ? std::string_view{}
+                                        : std::string_view{words[2].begin(), words.back().end()};
   return Input{TakeCommand{as_text(reason, kReasonMax)}};
 }
 
@@ -330,7 +327,7 @@ Result<Input> parse_input(std::string_view line) {
   if (verb == "audit") return view(View::audit, words);
   if (verb == "console") return view(View::console, words);
   if (verb == "command") return view(View::command, words);
-  if (verb == "take") return take_command(line, words);
+  if (verb == "take") return take_command(words);
   if (verb == "hand") return hand_over(words);
   if (verb == "fence") return fence_order(words, false);
   if (verb == "hold") return order(mission::CommandKind::hold, words);
