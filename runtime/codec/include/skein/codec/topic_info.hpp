@@ -33,7 +33,7 @@ struct TopicInfo {
   std::uint16_t version;  ///< of the type
   Roles writers;
   Roles readers;
-  bool reliable;                ///< resent until acknowledged, and in the sender's order
+  bool reliable;  ///< resent until acknowledged, and in the sender's order
   air::Urgency urgency;
   std::int32_t writer_history;  ///< samples kept for resending; the oldest gives way, never blocks
   std::int32_t reader_history;  ///< samples kept while an earlier one is missing
