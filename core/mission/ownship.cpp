@@ -214,6 +214,11 @@ bool Ownship::on_track(const TimedPath& timed) const {
   return std::abs(error.along_m) < kOnTrackM && std::abs(error.cross_m) < kOnTrackM;
 }
 
+event::TaskFailed Ownship::off_path(Instant over, Instant planned) const {
+  return {event::TaskFailure::off_path, planned,
+          was_located(over) ? "" : "its flight controller did not tell where it was"};
+}
+
 double Ownship::along_m() const {
   return planning::follow_error(flight_.plan().timed, state_, state_.time).along_m;
 }

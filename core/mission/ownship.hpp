@@ -7,6 +7,7 @@
 #include "flight.hpp"
 #include "landing.hpp"
 #include "skein/mission/events.hpp"
+#include "skein/mission/guidance.hpp"
 #include "skein/mission/range_budget.hpp"
 #include "skein/mission/vehicle_agent.hpp"
 #include "take_off.hpp"
@@ -109,7 +110,13 @@ class Ownship {
   [[nodiscard]] bool stays_in_fence(const Path& way, double orbit_curvature_per_m = 0.0) const;
   /// It is outside of its fence, or what it flies leads there within seconds.
   [[nodiscard]] bool leaves_fence(Instant now) const;
-  /// Is it where that path has it? Then a task on it counts as flown.
+  /// Its flight controller has told where it was then, or not long before. Else nobody knows.
+  [[nodiscard]] bool was_located(Instant at) const {
+    return state_.time + kFlightControllerSilence >= at;
+  }
+  /// Of a task that was over then, and is not flown as far as anybody knows.
+  [[nodiscard]] event::TaskFailed off_path(Instant over, Instant planned) const;
+  /// Is it where that path has it? Then a task on it counts as flown, if it was located.
   [[nodiscard]] bool on_track(const TimedPath& timed) const;
   /// How far it is ahead of where its flight has it by now; negative where it is behind.
   [[nodiscard]] double along_m() const;

@@ -244,14 +244,17 @@ std::optional<SurveyedSite> Scout::survey(Instant now) {
   if (machine_.in(State::to_survey)) {
     if (now < arrival()) return std::nullopt;
     fire(Event::arrived);
-    strayed_ = false;
+    strayed_ = unlocated_ = false;
     outbox_.report(event::SurveyStarted{arrival()}, {}, survey_of(site_), arrival());
   }
   strayed_ = strayed_ || !ownship_.on_arc(site_.position, ownship_.spec().sensor_radius_m);
-  if (now < plan_.timed.end_time()) return std::nullopt;
+  const Instant over = plan_.timed.end_time();
+  if (now < over) return std::nullopt;
+  unlocated_ = !ownship_.was_located(over);
+  if (now < told_time()) return std::nullopt;
   fire(Event::ended);
-  if (strayed_ || !ownship_.on_track(plan_.timed)) {
-    outbox_.report(event::TaskFailed{TaskFailure::off_path}, {}, survey_of(site_), now);
+  if (unlocated_ || strayed_ || !ownship_.on_track(plan_.timed)) {
+    outbox_.report(ownship_.off_path(over, {}), {}, survey_of(site_), now);
     found_.push_back({site_});
     return std::nullopt;
   }
@@ -299,10 +302,16 @@ Instant Scout::leads_at() const {
   return std::max(arrival() + ownship_.config().protocol.silence, in_turn_at_);
 }
 
+/// What became of the survey is told: a moment later where that is not known at once.
+Instant Scout::told_time() const {
+  const Instant over = plan_.timed.end_time();
+  return unlocated_ ? over + kFlightControllerSilence : over;
+}
+
 Instant Scout::next_timeout() const {
   if (!flying()) return Instant::max();
   if (machine_.in(State::listening)) return leads_at();
-  return machine_.in(State::surveying) ? plan_.timed.end_time() : arrival();
+  return machine_.in(State::surveying) ? told_time() : arrival();
 }
 
 std::string_view to_string(Scout::State state) {

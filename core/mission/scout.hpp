@@ -121,6 +121,7 @@ class Scout {
   [[nodiscard]] std::optional<SurveyedSite> relieve(Instant now);
   [[nodiscard]] Instant unheard_since(Instant now) const;
   [[nodiscard]] Instant arrival() const;
+  [[nodiscard]] Instant told_time() const;
   [[nodiscard]] Instant leads_at() const;
   [[nodiscard]] int rank() const;
 
@@ -130,6 +131,7 @@ class Scout {
   Site site_;                   ///< unless idle: that it flies to
   planning::TaskPlan plan_;     ///< of that flight
   bool strayed_ = false;        ///< from the arc of its survey (Ownship::on_arc)
+  bool unlocated_ = false;      ///< it is over, and where it was then has not been heard yet
   bool waited_ = false;         ///< since relieve() last looked
   Instant in_turn_at_{};        ///< to lead what it relieves, after that
   std::set<SiteId> known_;      ///< found or announced by anybody

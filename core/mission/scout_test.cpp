@@ -206,6 +206,22 @@ TEST(Scout, ASurveyOffItsPathIsNone) {
   EXPECT_EQ(s.reported(EventKind::survey_done), 0);
 }
 
+TEST(Scout, ASurveyWhoseEndNobodyHasSeenIsNone) {
+  Scouting s;
+  s.find(test_site(1));
+  EXPECT_FALSE(s.scout.take_up(s.now));
+  EXPECT_FALSE(s.fly_until(to_seconds(s.scout.next_timeout()) + 2.0));
+  ASSERT_EQ(s.scout.state(), State::surveying);
+  s.now = s.scout.next_timeout();
+  EXPECT_FALSE(s.scout.fly(s.now));
+  EXPECT_EQ(s.scout.state(), State::surveying) << "it may yet be heard";
+  ASSERT_GT(s.scout.next_timeout(), s.now);
+  s.now = s.scout.next_timeout();
+  EXPECT_FALSE(s.scout.fly(s.now));
+  EXPECT_EQ(s.reported(EventKind::task_failed), 1);
+  EXPECT_EQ(s.reported(EventKind::survey_done), 0);
+}
+
 TEST(Scout, FliesToASiteWhoseLeaderIsLostAndListensThere) {
   Scouting s;
   s.is_announced(test_site(1));

@@ -12,6 +12,7 @@
 #include "skein/coalition/messages.hpp"
 #include "skein/domain/site.hpp"
 #include "skein/domain/task.hpp"
+#include "skein/mission/guidance.hpp"
 #include "skein/planning/allocation.hpp"
 
 namespace skein::mission {
@@ -54,9 +55,10 @@ class TaskFlight {
   Site site;
   TaskAssignment assignment;
   planning::TaskPlan plan;
-  bool untimely = false;  ///< it has been told that the wind does not let it be on time
-  bool strayed = false;   ///< from its arc (Ownship::on_arc), since it has begun
-  Duration late{};        ///< that a delivery is over its site, as the wind has it
+  bool untimely = false;   ///< it has been told that the wind does not let it be on time
+  bool strayed = false;    ///< from its arc (Ownship::on_arc), since it has begun
+  Duration late{};         ///< that a delivery is over its site, as the wind has it
+  bool unlocated = false;  ///< it is over, and where the vehicle was then has not been heard yet
 
   /// Precondition: the table has it.
   void fire(Event event) {
@@ -93,6 +95,10 @@ class TaskFlight {
   [[nodiscard]] Instant end_time() const { return plan.timed.end_time(); }
   /// It is over, and something else may be flown.
   [[nodiscard]] Instant over_time() const { return end_time() + late; }
+  /// What became of it is told: a moment later where that is not known at once.
+  [[nodiscard]] Instant told_time() const {
+    return unlocated ? over_time() + kFlightControllerSilence : over_time();
+  }
 
  private:
   StateMachine<State, Event> machine_{kTable, State::planned};

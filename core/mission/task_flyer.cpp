@@ -305,7 +305,9 @@ void TaskFlyer::fly(Instant now) {
   }
   if (!task_->in(TaskFlight::State::begun)) return;
   if (task_->is_delivery() && now >= task_->end_time() - kLooksAhead) run_on(now);
-  if (now >= task_->over_time()) end(now);
+  if (now < task_->over_time()) return;
+  task_->unlocated = !ownship_.was_located(task_->over_time());
+  if (now >= task_->told_time()) end(now);
 }
 
 /// Where the wind takes more than the vehicle's speed has, another path keeps the time: at a speed
@@ -342,6 +344,7 @@ void TaskFlyer::commit_delivery(Instant now) {
   const Instant gate = task_->begin_time();
   const bool in_time = now >= gate - kCommitLead && now <= gate - kCommitLatest;
   if (!in_time || !task_->accepts(TaskFlight::Event::committed)) return;
+  if (!ownship_.was_located(now)) return;
   if (!participant_.holds(task_->assignment.task, now, task_->end_time())) return;
   if (!run_is_open()) return;
   SKEIN_ASSERT(task_->authorised());
@@ -432,7 +435,8 @@ void TaskFlyer::begin(Instant now) {
 }
 
 void TaskFlyer::end(Instant now) {
-  const bool flown = ownship_.on_track(task_->plan.timed) && !task_->strayed;
+  const bool lost = task_->unlocated || task_->strayed;
+  const bool flown = !lost && ownship_.on_track(task_->plan.timed);
   if (task_->is_delivery()) ownship_.use_load();
   task_->fire(TaskFlight::Event::finished);
   const TaskFlight task = *std::exchange(task_, std::nullopt);
@@ -442,8 +446,7 @@ void TaskFlyer::end(Instant now) {
     outbox_.report(event::TaskDone{planned}, task.round, id, task.end_time());
     participant_.task_done(id, task.end_time(), now);  // however late the wind made it
   } else {
-    outbox_.report(event::TaskFailed{TaskFailure::off_path, planned}, task.round, id,
-                   task.end_time());
+    outbox_.report(ownship_.off_path(task.over_time(), planned), task.round, id, task.end_time());
     participant_.task_failed(id, now);
   }
 }
@@ -478,7 +481,7 @@ Instant TaskFlyer::next_timeout() const {
   if (!task_ || task_->in(TaskFlight::State::late))
     return next;  // who is late waits for its leader
   const bool begun = task_->in(TaskFlight::State::begun);
-  return std::min(next, begun ? task_->over_time() : task_->begin_time());
+  return std::min(next, begun ? task_->told_time() : task_->begin_time());
 }
 
 Instant TaskFlyer::quiet_until(bool may_lead, Instant now) const {

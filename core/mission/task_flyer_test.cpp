@@ -76,11 +76,18 @@ struct Flying : PartsBench {
   void fly_until(double seconds) {
     for (double t = to_seconds(now); t < seconds; t += 0.1) {
       be_at(t);
-      flyer.fly_begun(now);
-      flyer.on_timeout(false, now);
-      while (const auto output = flyer.poll_output()) flyer.answer(*output, now);
-      flyer.fly(now);
+      step();
     }
+  }
+  /// Its flight controller is silent.
+  void be_lost_until(double seconds) {
+    for (; to_seconds(now) < seconds; now += std::chrono::milliseconds{100}) step();
+  }
+  void step() {
+    flyer.fly_begun(now);
+    flyer.on_timeout(false, now);
+    while (const auto output = flyer.poll_output()) flyer.answer(*output, now);
+    flyer.fly(now);
   }
 
   TaskFlyer flyer{ownship, outbox};
@@ -289,6 +296,35 @@ TEST(TaskFlyer, DeliversWithAGrantUnderItsLease) {
   EXPECT_EQ(f.reported(EventKind::task_done), 1);
   EXPECT_FALSE(f.flyer.flying());
   EXPECT_EQ(f.ownship.loads(), 0);
+}
+
+TEST(TaskFlyer, WhatNobodyHasSeenIsNotDone) {
+  for (const bool heard_again : {false, true}) {
+    Flying f;
+    f.may_deliver();
+    f.fly_until(59.0);
+    ASSERT_TRUE(f.flyer.in_run());
+    f.be_lost_until(60.2);
+    EXPECT_EQ(f.reported(EventKind::task_done) + f.reported(EventKind::task_failed), 0)
+        << "it may yet be heard";
+    EXPECT_GT(f.flyer.next_timeout(), f.now);
+    if (heard_again) {
+      f.fly_until(60.4);
+    } else {
+      f.be_lost_until(61.0);
+    }
+    EXPECT_EQ(f.reported(EventKind::task_done), heard_again ? 1 : 0);
+    EXPECT_EQ(f.reported(EventKind::task_failed), heard_again ? 0 : 1);
+    EXPECT_EQ(f.ownship.loads(), 0) << "it counts as used in any case";
+  }
+}
+
+TEST(TaskFlyer, NobodyPassesAGateWithoutKnowingWhereItIs) {
+  Flying f;
+  f.may_deliver();
+  f.fly_until(50.0);
+  f.be_lost_until(62.0);
+  EXPECT_EQ(f.reported(EventKind::task_started), 0);
 }
 
 TEST(TaskFlyer, WhoIsLateTurnsAwayOnlyBeyondTheSite) {
