@@ -29,6 +29,7 @@ mission::TrackAgentConfig track_agent(const configuration::VehicleConfig& config
   agent.vehicle = config.vehicle;
   agent.instance = instance;
   agent.hazards = config.hazards;
+  agent.fence = config.fence;
   agent.place_tolerance_m = config.formation.place_tolerance_m;
   return agent;
 }

@@ -8,6 +8,7 @@
 #include "flight.hpp"
 #include "return_way.hpp"
 #include "skein/base/angles.hpp"
+#include "skein/planning/fence_check.hpp"
 
 namespace skein::mission {
 namespace {
@@ -34,6 +35,14 @@ bool flyable(const TimedPath& timed, const VehicleSpec& vehicle) {
          !timed.path.segments.empty() && timed.paces.size() == timed.path.segments.size() + 1;
 }
 
+/// What is left of it from then on, or a lap of the orbit at its end.
+bool leads_out(const Fence& fence, const TimedPath& timed, Instant from) {
+  const double begin_m = timed.distance_at(std::max(from, timed.start_time));
+  const double lap_m = kTwoPi / std::abs(timed.tail_curvature_per_m);
+  const auto ahead = timed.piece(begin_m, std::max(begin_m, timed.path.length_m()) + lap_m);
+  return !ahead || planning::first_outside(fence, *ahead);
+}
+
 }  // namespace
 
 TrackAgent::TrackAgent(const TrackAgentConfig& config, Instant now)
@@ -44,7 +53,9 @@ TrackAgent::TrackAgent(const TrackAgentConfig& config, Instant now)
       now_{now},
       next_{now},
       next_status_{now},
-      next_range_{now} {}
+      next_range_{now} {
+  flight_->set_fence(config.fence);
+}
 TrackAgent::~TrackAgent() = default;
 
 void TrackAgent::on_state(const VehicleState& state, Instant now) {
@@ -70,7 +81,8 @@ void TrackAgent::on_return_flight(const ReturnFlight& message, Instant now) {
   if (message.plan <= return_plan_ || !ordered_) return;
   const double lap_m = kTwoPi * config_.vehicle.planning_radius_m();
   const bool takes = is_way_home(message.timed, config_.vehicle, *flight_, hazards_.all(),
-                                 range_left_m() - lap_m, now);
+                                 range_left_m() - lap_m, now) &&
+                     !leads_out(config_.fence, message.timed, now);
   if (takes && flight_->return_along(message.timed, now)) return_plan_ = message.plan;
 }
 
@@ -115,6 +127,7 @@ void TrackAgent::begin(Instant now) {
   flown_ = *std::exchange(next_flight_, {});
   flight_->fly(flown_->plan.timed);
   arrived_ = false;
+  keep_clear(now);  // of what was told since it was taken up
 }
 
 void TrackAgent::leave() {
@@ -163,13 +176,32 @@ void TrackAgent::on_hazard(const HazardReport& told, Instant now) {
   }
   if (!hazards_.add(hazard)) return;
   report(event::HazardKnown{hazard.id, hazard.radius_m}, now);
-  if (!flight_->started() || flight_->keeps_clear(hazards_.all(), now)) return;
+  if (flight_->started()) keep_clear(now);
+}
+
+void TrackAgent::keep_clear(Instant now) {
+  if (flight_->keeps_clear(hazards_.all(), now)) return;
   leave();
   if (flight_->homing()) {
     flight_->fly_home(hazards_.all(), now);
   } else {
     flight_->hold(hazards_.all(), now);
   }
+}
+
+/// Only where nothing that it flies leads out of that one: what is flown was given by the ground
+/// station, which has to give something else first.
+std::string TrackAgent::keep_fence(const Fence& fence, Instant now) {
+  if (config_.vehicle.height_m >= fence.height_max_m) return "its layer of height is above it";
+  if (flight_->started() && leads_out(fence, flight_->plan().timed, now)) {
+    return "what it flies leads out of it";
+  }
+  if (next_flight_ && leads_out(fence, next_flight_->plan.timed, now)) {
+    return "what it is to fly next leads out of it";
+  }
+  config_.fence = fence;
+  flight_->set_fence(fence);
+  return {};
 }
 
 void TrackAgent::on_timeout(Instant now) {

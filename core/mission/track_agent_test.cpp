@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "skein/mission/track_agent.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "skein/base/angles.hpp"
+
 namespace skein::mission {
 namespace {
+
+using ::testing::HasSubstr;
 
 /// A plane that is always where its plan has it.
 class Cockpit {
@@ -59,6 +64,7 @@ class Cockpit {
   [[nodiscard]] bool on_straight() const {
     return plan && plan->timed.path.segments.size() == 1 && plan->timed.paces.size() == 2;
   }
+  [[nodiscard]] std::string keep(const Fence& fence) { return agent_.keep_fence(fence, now); }
   /// As long as its pilot has it, it is put.
   void is_piloted(bool piloted) {
     agent_.on_piloted(piloted, now);
@@ -226,6 +232,34 @@ TEST(TrackAgent, LeavesTheFormationForAHazardInItsWay) {
   EXPECT_TRUE(cockpit.status->at_rest);
 }
 
+TEST(TrackAgent, DoesNotBeginAFlightIntoAHazardToldMeanwhile) {
+  Cockpit cockpit;
+  cockpit.fly(2.0);
+  const TrackFlight next = cockpit.flight(1, 2.0);
+  cockpit.tell(next);
+  cockpit.tell(HazardReport{{{2}, next.plan.timed.pose_at_distance(900.0).position(), 50.0}});
+  cockpit.fly(3.0);
+  EXPECT_FALSE(cockpit.on_straight());
+  EXPECT_TRUE(cockpit.status->at_rest);
+}
+
+TEST(TrackAgent, KeepsAFenceWhereNothingThatItFliesLeadsOut) {
+  Cockpit cockpit;
+  cockpit.fly(2.0);
+  Fence around;
+  around.corners = {{-700.0, -700.0}, {700.0, -700.0}, {700.0, 700.0}, {-700.0, 700.0}};
+  around.height_max_m = 200.0;
+  EXPECT_EQ(cockpit.keep(around), "");
+  Fence low = around;
+  low.height_max_m = 100.0;
+  EXPECT_NE(cockpit.keep(low), "");
+  cockpit.tell(cockpit.flight(1, 1.0));
+  EXPECT_THAT(cockpit.keep(around), HasSubstr("to fly next"));
+  cockpit.fly(2.0);
+  ASSERT_TRUE(cockpit.on_straight());
+  EXPECT_THAT(cockpit.keep(around), HasSubstr("what it flies leads out"));
+}
+
 TEST(TrackAgent, ComesHomeWhenItsRangeIsSpent) {
   Cockpit cockpit;
   cockpit.fly(2.0);
@@ -271,7 +305,10 @@ TEST(TrackAgent, HoldsWhenItsRangeIsSpentWhereItIsRecoveredAnywhere) {
 }
 
 TEST(TrackAgent, OnItsWayHomeByOrderItTakesUpTheWayThatIsPlannedWithTheOthers) {
-  Cockpit cockpit;
+  TrackAgentConfig fenced = Cockpit::plane();
+  fenced.fence.corners = {{-900.0, -900.0}, {900.0, -900.0}, {900.0, 900.0}, {-900.0, 900.0}};
+  fenced.fence.height_max_m = 200.0;
+  Cockpit cockpit{fenced};
   cockpit.fly(60.0);
   ReturnFlight way;
   way.vehicle = {3};
@@ -296,6 +333,13 @@ TEST(TrackAgent, OnItsWayHomeByOrderItTakesUpTheWayThatIsPlannedWithTheOthers) {
   EXPECT_GT(cockpit.plan->number, number);
   EXPECT_EQ(cockpit.detail(), ActivityDetail::returning);
   way_from(5.0);
+  ReturnFlight out = way;
+  EXPECT_TRUE(out.timed.path.append(Segment{0.0, 2000.0}));
+  EXPECT_TRUE(out.timed.path.append(Segment{1.0 / 90.0, 90.0 * kPi}));
+  EXPECT_TRUE(out.timed.path.append(Segment{0.0, 2000.0}));
+  const auto own = cockpit.plan->number;
+  cockpit.tell(out);
+  EXPECT_EQ(cockpit.plan->number, own) << "it leads out of the fence";
   cockpit.tell(way);
   const Instant later = way.timed.start_time + std::chrono::seconds{10};
   const Vec2 there = way.timed.pose_at(later).position();

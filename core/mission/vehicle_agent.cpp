@@ -19,6 +19,10 @@ void VehicleAgent::Impl::on_state(const VehicleState& state, Instant now) {
   if (starts && ownship_.flight().started() && failsafe_.in(Failsafe::Action::stay)) {
     ownship_.hold(now);
   }
+  // A route that was given before may lead into what was told since.
+  if (starts && ownship_.flight().en_route(now) && !ownship_.way_is_open(now)) {
+    respond(*failsafe_.update(now, {.path_barred = true}), now);
+  }
   if (order_at_start_ && ownship_.flight().started()) {
     obey(*std::exchange(order_at_start_, {}), now);
   }

@@ -159,6 +159,15 @@ TEST(VehicleWithRoute, AHazardOnTheWayEndsIt) {
   }
 }
 
+TEST(VehicleWithRoute, AHazardToldWhileItWaitsEndsItAtItsStart) {
+  Flown vehicle{on_route()};
+  vehicle.tell(HazardReport{{{4}, {1000.0, 600.0}, 80.0}});
+  vehicle.be_at({0.0, 100.0, 0.0}, -1.0);
+  EXPECT_NE(vehicle.agent.activity(), Activity::en_route);
+  vehicle.fly_until(60.0);
+  EXPECT_NE(vehicle.agent.activity(), Activity::en_route);
+}
+
 TEST(VehicleWithRoute, RangeIsKeptForTheWayHome) {
   // To the site and on it needs 1957 m, and back some 1490 m more.
   for (const double range_m : {4'500.0, 2'600.0}) {

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "skein/base/bounded_queue.hpp"
+#include "skein/domain/fence.hpp"
 #include "skein/domain/hazard.hpp"
 #include "skein/mission/onboard_agent.hpp"
 #include "skein/mission/range_budget.hpp"
@@ -21,6 +23,7 @@ struct TrackAgentConfig {
   InstanceId instance;
   planning::AvoidanceParams avoidance{.margin_m = kHazardMargin_m};
   std::vector<Hazard> hazards;     ///< known before the mission
+  Fence fence;                     ///< its orbits and ways home keep within it
   double place_tolerance_m = 8.0;  ///< to be in place
   Duration status_period = std::chrono::milliseconds{200};
 };
@@ -42,6 +45,7 @@ class TrackAgent final : public OnboardAgent {
   void on_timeout(Instant now) override;
   void on_bar(Bar bar, Instant now) override;
   void on_piloted(bool piloted, Instant now) override;
+  std::string keep_fence(const Fence& fence, Instant now) override;
 
   [[nodiscard]] std::optional<Message> poll_message() override { return messages_.pop(); }
   [[nodiscard]] std::optional<Guidance> poll_guidance() override;
@@ -61,6 +65,7 @@ class TrackAgent final : public OnboardAgent {
   void on_return_flight(const ReturnFlight& message, Instant now);
   void on_command(const Command& command, Instant now);
   void on_hazard(const HazardReport& told, Instant now);
+  void keep_clear(Instant now);
   void step(Instant now);
   void begin(Instant now);
   void leave();
