@@ -392,10 +392,9 @@ void Initiator::on_status(const MemberStatus& message, Instant now) {
     } else if (reported.state == TaskState::unknown && entry->ownership != Ownership::unknown) {
       entry->maybe_flown = true;
       if (entry->ownership == Ownership::open) make_unknown(*entry);
-    } else if (owner && reported.state == TaskState::failed && message.round == entry->round) {
-      lose(*entry, Reason::owner_failed);
-    } else if (owner && reported.state == TaskState::started) {
-      entry->reported = TaskState::started;
+    } else if (owner && message.round == entry->round) {  // not of an award before this one
+      if (reported.state == TaskState::failed) lose(*entry, Reason::owner_failed);
+      if (reported.state == TaskState::started) entry->reported = TaskState::started;
     }
   }
   finish_if_done();

@@ -221,6 +221,33 @@ TEST(Initiator, WhatAnOwnerOfAnEarlierRoundGivesBackIsOpen) {
   EXPECT_EQ(lost->assignment.task, Leader::task(1));
 }
 
+/// A late word of the round before would make of what is planned something that is begun.
+TEST(Initiator, WhatWasBegunInAnEarlierRoundIsNotBegunInThisOne) {
+  for (const std::uint32_t said_in : {1U, 2U}) {
+    Leader leader{1};
+    leader.stands({kFirst});
+    const auto says = [&](std::uint32_t round, TaskState state) {
+      leader.self.on_status({{kCoalition, round}, kFirst, {{Leader::task(0), state, leader.now}}},
+                            leader.now);
+    };
+    (void)leader.renews();
+    leader.hears_allegiance(kFirst, leader.now);
+    says(1, TaskState::failed);
+    (void)leader.renews();
+    ASSERT_EQ(leader.self.round().number, 2U);
+    leader.hears_bid(kFirst, 2);
+    ASSERT_TRUE(leader.bids_close());
+    leader.awards({kFirst});
+    const auto award = leader.newest_message<Award>();
+    ASSERT_TRUE(award);
+    leader.hears_confirmation(kFirst, 2);
+    says(said_in, TaskState::started);
+    leader.self.on_timeout(award->lease_until + leader.params.clock_guard);
+    const auto unknown = leader.newest<Initiator::TaskUnknown>();
+    EXPECT_EQ(unknown.has_value(), said_in == 2U);
+  }
+}
+
 /// Both would take what is awarded to their number.
 TEST(Initiator, TwoProgramsThatBidUnderOneNumberAreAwardedNothing) {
   Leader leader{1};
