@@ -198,12 +198,13 @@ void GroundReturn::plan(const Fleet& fleet, const std::vector<Hazard>& hazards, 
   std::vector<planning::ReturningVehicle> vehicles;
   for (auto& [vehicle, homing] : homing_) {
     const auto known = fleet.vehicles().find(vehicle);
-    const bool heard =
-        known != fleet.vehicles().end() && known->second.telemetry && !known->second.silent;
-    if (!heard || !homing.home || homing.alone) continue;
+    const bool told = known != fleet.vehicles().end() && known->second.telemetry;
+    if (!told || !homing.home || homing.alone) continue;
     const Telemetry& telemetry = *known->second.telemetry;
-    if (!homing.given && !is_known(vehicle, telemetry)) continue;
+    const bool silent = known->second.silent;
+    if (!homing.given && (silent || !is_known(vehicle, telemetry))) continue;
     vehicles.push_back(vehicle_of(vehicle, homing, telemetry, start));
+    if (silent) vehicles.back().flies = homing.given;  // as far as anybody knows
   }
   const auto planned = planning::plan_return(config_.params, vehicles, hazards);
   for (const auto& flight : planned.flights) {
@@ -248,6 +249,9 @@ Result<planning::ReturningVehicle> GroundReturn::as_if_ordered(VehicleId vehicle
   if (flies == flies_.end()) return Error{"has not told what it flies"};
   const auto homing = homing_.find(vehicle);
   if (homing != homing_.end() && homing->second.home) {
+    if (!homing->second.given && !is_known(vehicle, telemetry)) {
+      return Error{"has not told what it flies"};
+    }
     return vehicle_of(vehicle, homing->second, telemetry, start);
   }
   const TimedPath& timed = flies->second.timed;

@@ -238,6 +238,29 @@ TEST(GroundReturn, WhoIsBackInReachIsPlannedAroundTheOthers) {
   EXPECT_GE(field.least_m(), kApart_m);
 }
 
+/// It flies on, for all that is known.
+TEST(GroundReturn, WhoFallsSilentOnItsWayIsPlannedAround) {
+  for (std::uint16_t silent = 2; silent <= 8; ++silent) {
+    Field field{8, 0.0};
+    field = recalled(std::move(field));
+    field.judged = false;
+    field.far = {VehicleId{1}};
+    field.fly_until(at_seconds(85.0));
+    field.far.insert(VehicleId{silent});
+    field.fly_until(at_seconds(95.0));
+    field.far = {VehicleId{silent}};  // the order is said again
+    const auto rounds = field.planned();
+    while (field.planned() == rounds && field.now < at_seconds(120.0)) {
+      field.fly_until(field.now + kTick);
+    }
+    field.fly_until(field.now + 8s);
+    field.judged = true;
+    field.fly_until(at_seconds(600.0));
+    EXPECT_TRUE(field.alone().empty()) << silent;
+    EXPECT_GE(field.least_m(), kApart_m) << silent;
+  }
+}
+
 TEST(GroundReturn, AnotherOrderEndsIt) {
   Field field = recalled(Field{4, 0.0});
   field.fly_until(at_seconds(70.5));
