@@ -526,14 +526,15 @@ class GroundLoop {
   }
 
   void hand_out(Instant now) {
+    // First: what is decided is in the record, too, before it is said.
+    while (const auto event = node_.poll_event()) {
+      tell_of(*event, now);
+    }
     while (const auto message = node_.poll_message()) {
       send(*message, now);
       if (const auto* change = std::get_if<formation::Change>(&*message)) {
         recorder_.write_places(*change);
       }
-    }
-    while (const auto event = node_.poll_event()) {
-      tell_of(*event, now);
     }
     console_.on_traffic(node_.traffic().all());
     console_.on_decisions(node_.agent(), now);
