@@ -391,10 +391,11 @@ class Bench {
                       std::optional<std::size_t> file_bytes_max = {}) {
     const auto file = configuration_of(id);
     const bool terminal = options_.prompt && id == kGroundStation;
-    const bool other = is_of_other_release(options_.faults, id);
-    const auto& programs = other ? options_.other_programs : options_.programs;
+    const auto& programs =
+        is_of_other_release(options_.faults, id) ? options_.other_programs : options_.programs;
     std::vector<std::string> command{(programs / program).string(), "--config", file.string()};
-    if (const Duration ahead = nemesis_.clock_off(id); ahead != Duration{} && !other) {
+    if (const Duration ahead = nemesis_.clock_off(id); ahead != Duration{}) {
+      outcome_.clocks_off[id] = ahead;
       command.insert(command.end(), {"--clock-ahead", fmt::format("{}", to_seconds(ahead))});
     }
     if (id == kGroundStation && external_.ground() != nullptr) {
@@ -676,7 +677,6 @@ class Bench {
     nemesis_.let_go();
     hear();
     outcome_.spans = nemesis_.spans();
-    outcome_.clocks_off = nemesis_.clocks_off();
     outcome_.last = last_;
     writer_.reset();
     truth_.reset();

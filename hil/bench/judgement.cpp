@@ -19,6 +19,15 @@ using checks::CheckResult;
 using mission::EventKind;
 using mission::MissionEvent;
 
+namespace {
+
+bool clocks_differ(const BenchOutcome& outcome) {
+  return std::ranges::any_of(outcome.clocks_off,
+                             [](const auto& off) { return off.second != Duration{}; });
+}
+
+}  // namespace
+
 Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
                                       const std::filesystem::path& run_folder,
                                       const BenchOutcome& outcome) {
@@ -35,7 +44,8 @@ Result<checks::RunRecord> read_record(const configuration::Scenario& scenario,
   auto recordings = recording::read_run(run_folder);
   if (!recordings) return recordings.error();
   for (auto& r : *recordings) {
-    if (!outcome.spans.empty()) r = whole_recording(run_folder, r.vehicle, outcome);
+    if (!outcome.spans.empty() || clocks_differ(outcome))
+      r = whole_recording(run_folder, r.vehicle, outcome);
     if (r.vehicle == kGroundStation) {
       record.ground_events = std::move(r.events);
       record.places = std::move(r.places);
@@ -106,9 +116,7 @@ CheckResult script_flown(const configuration::Scenario& scenario, const BenchOut
 std::vector<CheckResult> judge_run(const configuration::Scenario& scenario,
                                    const checks::RunRecord& record, const BenchOutcome& outcome) {
   checks::Limits limits = limits_of(scenario.expect);
-  const bool clocks_differ = std::ranges::any_of(
-      outcome.clocks_off, [](const auto& off) { return off.second != Duration{}; });
-  if (clocks_differ) allow_for_clocks(limits, scenario.protocol);
+  if (clocks_differ(outcome)) allow_for_clocks(limits, scenario.protocol);
   auto results = scenario.formation.planes    ? checks::judge_tracks(record, limits)
                  : scenario.flies_formation() ? checks::judge_formation(record, limits)
                  : scenario.sites.empty()     ? checks::judge_routes(record, limits)

@@ -56,7 +56,6 @@ class Nemesis {
     const auto found = clock_off_.find(node);
     return found == clock_off_.end() ? Duration{} : found->second;
   }
-  [[nodiscard]] const std::map<VehicleId, Duration>& clocks_off() const { return clock_off_; }
 
   /// What a full disk leaves room for in a file: a start's number, and a few lines of a log.
   static constexpr std::size_t kRoom_bytes = 16384;

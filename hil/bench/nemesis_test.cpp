@@ -119,6 +119,16 @@ TEST_F(NemesisTest, WhoIsSlowStandsStillForItsShareOfTheTime) {
   }
 }
 
+TEST_F(NemesisTest, WhoIsSlowAndKilledRunsWhenItStartsAnew) {
+  ASSERT_TRUE(nemesis_.begin({{}, seconds{60}, ProgramSlow{kOne, 0.5}}, {}, at_seconds(10.0)));
+  ASSERT_TRUE(nemesis_.begin({{}, seconds{3}, ProgramsEnd{{kOne}}}, {kOne}, at_seconds(10.0)));
+  EXPECT_TRUE(programs_.at(kOne).wait(seconds{5}));
+  for (int i = 0; i < 59; ++i) {
+    ASSERT_TRUE(nemesis_.step(at_seconds(10.0) + i * milliseconds{50}));
+    EXPECT_FALSE(nemesis_.has_stopped(kOne)) << "it is down, and not stopped";
+  }
+}
+
 TEST_F(NemesisTest, OneStopAfterAnotherIsOneAndAKillEndsIt) {
   const auto stop = [this](double at_s, seconds lasts) {
     ASSERT_TRUE(nemesis_.begin({{}, lasts, ProgramsStall{{kTwo}}}, {kTwo}, at_seconds(at_s)));

@@ -201,6 +201,20 @@ void take_over(const TeamMission& mission, configuration::Scenario& scenario) {
   scenario.duration_max = mission.duration_max;
 }
 
+/// Another release may not know how to be told its clock. Taken out last, so that what else is
+/// drawn is what it was.
+std::vector<Fault> without_clocks_of_others(std::vector<Fault> faults) {
+  std::vector<Fault> kept;
+  for (const Fault& fault : faults) {
+    const auto* off = std::get_if<ClockOff>(&fault.what);
+    const auto* step = std::get_if<ClockStep>(&fault.what);
+    const bool of_other = (off != nullptr && is_of_other_release(faults, off->node)) ||
+                          (step != nullptr && is_of_other_release(faults, step->vehicle));
+    if (!of_other) kept.push_back(fault);
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::vector<std::string_view> process_profiles() {
@@ -247,7 +261,7 @@ Result<std::vector<Fault>> spoil(configuration::Scenario& scenario, const std::s
   std::vector<Fault> faults{mission.faults.begin() + static_cast<std::ptrdiff_t>(own),
                             mission.faults.end()};
   for (Fault& fault : Draw{scenario, params}.faults()) faults.push_back(std::move(fault));
-  return faults;
+  return without_clocks_of_others(std::move(faults));
 }
 
 }  // namespace skein::hil

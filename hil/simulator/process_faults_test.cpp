@@ -77,6 +77,23 @@ TEST(ProcessFaults, ANemesisHasEverythingInTheEnd) {
   EXPECT_TRUE(ground_restarted);
 }
 
+TEST(ProcessFaults, AnotherReleaseIsNotToldItsClock) {
+  int others = 0;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    auto of = scenario(seed);
+    const auto faults = spoil(of, "versions,clocks,clock,nemesis", true);
+    ASSERT_TRUE(faults);
+    for (const Fault& fault : *faults) {
+      const auto* off = std::get_if<ClockOff>(&fault.what);
+      const auto* step = std::get_if<ClockStep>(&fault.what);
+      EXPECT_FALSE(off != nullptr && is_of_other_release(*faults, off->node)) << seed;
+      EXPECT_FALSE(step != nullptr && is_of_other_release(*faults, step->vehicle)) << seed;
+      others += std::holds_alternative<OtherRelease>(fault.what) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(others, 100);
+}
+
 TEST(ProcessFaults, TheRadioIsWholeFromTheHealingOn) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     auto of = scenario(seed);
