@@ -180,8 +180,11 @@ Result<RunFolder> RunFolder::open(const std::filesystem::path& folder, const Ser
       return same.error();
     if (auto same = same_shard(series.shard, before->shard, folder); !same) return same.error();
   }
-  if (auto put = put_text(folder / kFile, written(series)); !put) return put.error();
   return opened;
+}
+
+Result<void> keep_series(const std::filesystem::path& folder, const Series& series) {
+  return put_text(folder / kFile, written(series));
 }
 
 RunFolder::RunFolder(RunFolder&& other) noexcept : lock_{std::exchange(other.lock_, -1)} {}

@@ -29,12 +29,19 @@ class RunFolders : public ::testing::Test {
     series_.separation_m = 2.1;
   }
   void TearDown() override { std::filesystem::remove_all(root_); }
+  /// As a command does that is not refused.
+  Result<RunFolder> take(const Series& series) {
+    auto opened = RunFolder::open(root_ / "a", series);
+    if (!opened) return opened;
+    if (auto kept = keep_series(root_ / "a", series); !kept) return kept.error();
+    return opened;
+  }
   std::filesystem::path root_;
   Series series_;
 };
 
 TEST_F(RunFolders, KeepTheirSeries) {
-  ASSERT_TRUE(RunFolder::open(root_ / "a", series_));
+  ASSERT_TRUE(take(series_));
   const auto read = read_series(root_ / "a");
   ASSERT_TRUE(read) << read.error().message;
   EXPECT_EQ(read->kind, series_.kind);
@@ -52,18 +59,21 @@ TEST_F(RunFolders, KeepTheirSeries) {
 }
 
 TEST_F(RunFolders, AreOneExperiments) {
-  ASSERT_TRUE(RunFolder::open(root_ / "a", series_));
+  ASSERT_TRUE(take(series_));
   auto more = series_;
   more.runs = 100;
   more.shard = {};
   more.file = "elsewhere.yaml";
   EXPECT_TRUE(RunFolder::open(root_ / "a", more));
+  // Who opens it may still find that its scenario is another.
+  EXPECT_EQ(read_series(root_ / "a")->runs, series_.runs);
+  EXPECT_TRUE(take(more));
   EXPECT_EQ(read_series(root_ / "a")->runs, 100U);
   const auto refused = [&](const Series& other) {
     const auto opened = RunFolder::open(root_ / "a", other);
     return opened ? std::string{"taken"} : opened.error().message;
   };
-  EXPECT_TRUE(RunFolder::open(root_ / "a", series_));  // and its shard again
+  EXPECT_TRUE(take(series_));  // and its shard again
   auto other = series_;
   other.shard = {3, 17};
   EXPECT_THAT(refused(other), HasSubstr("of shard 3/16, and this command's of 3/17"));

@@ -48,6 +48,7 @@ Result<SeriesTable> SeriesTable::open(const std::filesystem::path& folder,
   if (!opened) return opened.error();
   if (auto kept = shards::keep_text(folder / kScenarioFile, scenario, kScenarioAndPlan); !kept)
     return kept.error();
+  if (auto kept = shards::keep_series(folder, series); !kept) return kept.error();
   const bool formation = series.kind == kFormation;
   auto rows =
       shards::RowFile::open(folder / kRunsFile, row_columns(formation), reader_of(formation));

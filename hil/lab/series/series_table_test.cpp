@@ -89,6 +89,10 @@ TEST_F(SeriesTables, AreOfOneScenario) {
   ASSERT_FALSE(other);
   EXPECT_THAT(other.error().message,
               HasSubstr("the scenario, or its plan (--routes), has changed"));
+  auto fewer = series_;
+  fewer.runs = 1;
+  EXPECT_FALSE(SeriesTable::open(root_ / "a", fewer, "another\n"));
+  EXPECT_EQ(shards::read_series(root_ / "a")->runs, series_.runs) << "refused, and nothing changed";
   ASSERT_TRUE(SeriesTable::open(root_ / "c", series_, "another\n"));
   const auto differ = same_scenario(root_ / "a", root_ / "c");
   ASSERT_FALSE(differ);

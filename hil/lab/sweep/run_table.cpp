@@ -71,6 +71,7 @@ Result<RunTable> RunTable::open(const std::filesystem::path& folder, const Exper
   if (auto kept = keep(folder / kExperimentFile, experiment); !kept) return kept.error();
   if (auto kept = shards::keep_text(folder / kScenarioFile, identity(base), "scenario"); !kept)
     return kept.error();
+  if (auto kept = shards::keep_series(folder, series); !kept) return kept.error();
 
   RunTable table;
   table.folder_ = std::move(*opened);

@@ -51,6 +51,9 @@ class RunFolder {
   int lock_ = -1;
 };
 
+/// Writes FOLDER/series.txt: last of what says of what the folder is, so that what is refused for
+/// its scenario has changed nothing.
+[[nodiscard]] Result<void> keep_series(const std::filesystem::path& folder, const Series& series);
 /// FOLDER/series.txt. Fails where there is none.
 [[nodiscard]] Result<Series> read_series(const std::filesystem::path& folder);
 
