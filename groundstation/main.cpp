@@ -191,6 +191,14 @@ int tell_written(const PlanArguments& arguments,
   return 0;
 }
 
+/// What was planned before is not of what was refused now.
+int refuse_plan(const PlanArguments& arguments, const std::string& why) {
+  const auto before = folder_of(arguments) / "plan.yaml";
+  if (!std::filesystem::exists(before)) return fail(why, kExitRefused);
+  return fail(why + "; " + before.string() + " and what is beside it are of an earlier plan",
+              kExitRefused);
+}
+
 int plan_routes(const PlanArguments& arguments, const skein::configuration::Scenario& scenario) {
   skein::routes::RoutePlannerParams params;
   const bool shows = ::isatty(STDERR_FILENO) == 1;
@@ -204,9 +212,10 @@ int plan_routes(const PlanArguments& arguments, const skein::configuration::Scen
   };
   const auto planned = groundstation::plan_routes(scenario, params);
   if (shows) std::fputs("\r\033[K", stderr);
-  if (!planned) return fail(planned.error().message, kExitRefused);
+  if (!planned) return refuse_plan(arguments, planned.error().message);
   std::fputs(groundstation::routes_text(*planned).c_str(), stdout);
-  if (!planned->check.ok()) return fail("the plan breaks a rule; nothing is written", kExitRefused);
+  if (!planned->check.ok())
+    return refuse_plan(arguments, "the plan breaks a rule; nothing is written");
   return tell_written(arguments,
                       groundstation::write_routes(*planned, scenario, folder_of(arguments)));
 }
@@ -228,7 +237,7 @@ int plan_tasks(const PlanArguments& arguments, const skein::configuration::Scena
   };
   const auto planned = groundstation::plan_tasks(scenario, budget);
   if (shows) std::fputs("\r\033[K", stderr);
-  if (!planned) return fail(planned.error().message, kExitRefused);
+  if (!planned) return refuse_plan(arguments, planned.error().message);
   std::fputs(groundstation::tasks_text(*planned).c_str(), stdout);
   return tell_written(arguments, groundstation::write_tasks(*planned, folder_of(arguments)));
 }
@@ -515,7 +524,7 @@ class CommandLine {
         .add_option("--time", planning_.seconds,
                     "Of tasks: seconds to plan for (default: some seconds of work, with which the "
                     "same mission gives the same plan on every machine)")
-        ->check(CLI::Range(0.01, 86400.0));
+        ->check(skein::command_line::number_in(0.01, 86400.0));
     command.footer(
         "Examples:\n"
         "  skein-ground plan scenarios/routes-3.yaml\n"
@@ -572,7 +581,7 @@ class CommandLine {
     command.add_option("--port", replaying_.console.port, "Of the console, on loopback")
         ->capture_default_str();
     command.add_option("--speed", replaying_.speed, "Recorded seconds in a second")
-        ->check(CLI::Range(0.1, 100.0))
+        ->check(skein::command_line::number_in(0.1, 100.0))
         ->capture_default_str();
     command.add_option("--at", replaying_.at_s,
                        "Seconds of mission time: shows that moment, paused");

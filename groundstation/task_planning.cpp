@@ -110,6 +110,13 @@ Result<PlannedTasks> plan_tasks(const Scenario& scenario, const planning::Planni
   }
   PlannedTasks planned;
   planned.problem = tasking_problem(scenario);
+  if (const std::size_t team = planned.problem.vehicles.size();
+      team > planning::kCoupledVehiclesMax) {
+    return Error{fmt::format(
+        "tasks are planned for {} vehicles at most, and the mission has {}; plan parts of the team "
+        "for parts of the sites",
+        planning::kCoupledVehiclesMax, team)};
+  }
   // Where there are too few vehicles for one task each, they have one at each of several sites.
   const bool few = !each_may_have_one(planned.problem);
   planned.problem.share = few ? planning::TaskShare::one_a_site : planning::TaskShare::one;

@@ -207,7 +207,7 @@ void add_flight_options(CLI::App& app, FcArguments& a, Texts& t) {
                  "mAh of a full battery: it gives 0.5 A, and 60 A more at full throttle")
       ->capture_default_str();
   app.add_option("--wind-speed", t.wind_mps, "Steady wind, m/s")
-      ->check(CLI::Range(0.0, 25.0))
+      ->check(command_line::number_in(0.0, 25.0))
       ->capture_default_str();
   app.add_option("--wind-from", t.wind_from_deg, "Where it comes from, degrees from north")
       ->capture_default_str();

@@ -112,7 +112,7 @@ void add_run(CLI::App& app, int& status) {
       app.add_subcommand("run", "Fly a scenario with real processes, judge it, write a report");
   command->add_option("scenario", arguments->scenario, "Scenario file (YAML)")->required();
   command->add_option("--rate", arguments->rate, "Mission seconds in a real second")
-      ->check(CLI::Range(0.1, 20.0))
+      ->check(command_line::number_in(0.1, 20.0))
       ->capture_default_str();
   command->add_option("--routes", arguments->routes,
                       "A plan of `skein-ground plan`: of a mission of routes (without it one "
@@ -128,7 +128,7 @@ void add_run(CLI::App& app, int& status) {
       ->add_option("--lead", arguments->lead_s,
                    "Seconds from the start of the programs to that of the mission; a slow machine "
                    "wants more (default: by the number of vehicles)")
-      ->check(CLI::Range(1.0, 600.0));
+      ->check(command_line::number_in(1.0, 600.0));
   command->add_option("--can", arguments->can,
                       "CAN bus of all flight controllers, such as vcan0 (default: multicast "
                       "buses of their own on loopback)");
@@ -357,19 +357,19 @@ void add_swap(CLI::App& app, int& status) {
       ->add_option("--radius", arguments->radius_m,
                    "Of the circle, m (default: 10 for 5 agents, 40 for 32, 100 for 100, 200 for "
                    "250)")
-      ->check(CLI::Range(3.0, 10'000.0));
+      ->check(command_line::number_in(3.0, 10'000.0));
   command
       ->add_option("--noise", arguments->noise_m, "Starts are so far off their places at most, m")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(command_line::number_in(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--delay", arguments->delay_s, "Of messages, s")
-      ->check(CLI::Range(0.0, 5.0))
+      ->check(command_line::number_in(0.0, 5.0))
       ->capture_default_str();
   command->add_option("--loss", arguments->loss, "Share of the messages that are lost")
-      ->check(CLI::Range(0.0, 1.0))
+      ->check(command_line::number_in(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--separation", arguments->separation_m, "Least distance wanted, m")
-      ->check(CLI::Range(0.1, 100.0))
+      ->check(command_line::number_in(0.1, 100.0))
       ->capture_default_str();
   command->add_option("--csv", arguments->csv, "File to write, a row for each run");
   command->add_option("--plots", arguments->plots,
@@ -429,7 +429,7 @@ void add_shapes(CLI::App& app, int& status) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_option("--spacing", arguments->spacing_m, "Least distance of two places, m")
-      ->check(CLI::Range(0.1, 1000.0))
+      ->check(command_line::number_in(0.1, 1000.0))
       ->capture_default_str();
   command->add_option("--svg", arguments->picture, "Picture to write, in place of the numbers");
   command->footer(
@@ -451,7 +451,7 @@ void add_can_dump(CLI::App& can, int& status) {
       ->required();
   command->add_option("--log", arguments->log, "File to write, as candump -L does");
   command->add_option("--seconds", arguments->seconds, "End after that (default: at Ctrl-C)")
-      ->check(CLI::PositiveNumber);
+      ->check(command_line::number_in(0.01, 1e9));
   command->footer("Example: skein-hil can dump mcast:0 --log flight.log");
   command->callback([arguments, &status] { status = dump_can(*arguments); });
 }
@@ -462,7 +462,7 @@ void add_can_replay(CLI::App& can, int& status) {
   command->add_option("log", arguments->log, "File of candump -L")->required();
   command->add_option("bus", arguments->bus, "As for dump; without it, the record is only shown");
   command->add_option("--rate", arguments->rate, "Seconds of the record in a real second")
-      ->check(CLI::Range(0.01, 1000.0))
+      ->check(command_line::number_in(0.01, 1000.0))
       ->capture_default_str();
   command->footer("Example: skein-hil can replay flight.log mcast:1 --rate 10");
   command->callback([arguments, &status] { status = replay_can(*arguments); });

@@ -50,6 +50,9 @@ int fly_one(const configuration::Scenario& scenario, const SimulateArguments& ar
       "{}: {} of {} sites done after {:.1f} s of mission time, {} messages, {} protocol errors\n",
       run.sites_done ? "DONE" : "NOT DONE", run.result.sites_done, scenario.sites.size(),
       to_seconds(run.result.ended_at), run.result.messages, run.result.protocol_errors);
+  for (const auto& [task, why] : record.excused) {
+    fmt::print("not to be done: {}: {}\n", to_string(task), why);
+  }
   const auto hindsight = hindsight::look_back(record, limits, hindsight::kFewSteps);
   const std::string compared = hindsight::comparison_text(hindsight);
   fmt::print("{}", hindsight ? "\n" + compared + "\n" : compared);

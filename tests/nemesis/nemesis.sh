@@ -69,7 +69,9 @@ held=$(count '^[0-9]+,held,' "$rows") all=${#seeds[@]}
 read -r done_tasks all_tasks < <(awk -F'[, ]' '$3 ~ /^[0-9]/ {done += $3; all += $5} END {print done + 0, all + 0}' "$rows")
 echo "$held of $all runs held every promise, $done_tasks of $all_tasks tasks were done; rows: $rows"
 if ((held != all)); then
-  awk -F, -v folder="$folder" '/^[0-9]/ && $2 != "held" {print "seed " $1 ": " $2 " " $NF "; " folder "/" $1 ".log ends with the command that repeats it"}' "$rows"
+  awk -F, -v folder="$folder" '/^[0-9]/ && $2 == "broken" {print "seed " $1 ": " $2 " " $NF "; " folder "/" $1 ".log ends with the command that repeats it"}' "$rows"
+  unflown=$(awk -F, '/^[0-9]/ && $2 == "not flown" {print $1; exit}' "$rows")
+  [[ -z $unflown ]] || echo "seed $unflown and others: not flown; $folder/$unflown.log: $(tail -n 1 "$folder/$unflown.log")"
   exit 1
 fi
 if ((all >= 3 && 2 * done_tasks < all_tasks)); then

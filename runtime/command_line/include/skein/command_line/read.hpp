@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <optional>
 #include <string>
 
@@ -18,6 +19,17 @@ inline std::string refusal(const CLI::App* app, const CLI::Error& error) {
   const bool lacks = last->get_require_subcommand_min() > 0 && !words.empty();
   if (!lacks || words.front().starts_with('-')) return CLI::FailureMessage::simple(app, error);
   return words.front() + ": there is no such command; --help lists those that there are\n";
+}
+
+/// As CLI::Range, which takes what is no number: "nan" is neither below nor above anything.
+inline CLI::Validator number_in(double least, double most) {
+  const CLI::Range range{least, most};
+  const auto refuse = [range](std::string& text) {
+    double value = 0.0;
+    const bool is_read = CLI::detail::lexical_cast(text, value);
+    return is_read && std::isnan(value) ? text + " is not a number" : range(text);
+  };
+  return CLI::Validator{refuse, range.get_description()};
 }
 
 /// Reads the program's arguments. If it is to end with that, its exit status: 0 after --help or
