@@ -157,8 +157,16 @@ export default [
     slip: 'an owner that says that its task of an earlier round failed is not heard',
     promise: 'nothing is forgotten: what its owner gives back is given away again',
     file: initiator,
-    from: 'reported.state == TaskState::failed && message.round == entry->round) {',
-    to: 'reported.state == TaskState::failed && message.round == announcement_.round) {',
+    from: '} else if (owner && message.round == entry->round) {',
+    to: '} else if (owner && message.round == announcement_.round) {',
+  },
+  {
+    name: 'begun-in-an-older-round',
+    slip: 'a late word that a task was begun in an earlier round counts for the award after it',
+    promise: 'what is only planned is given to another one when its owner is lost',
+    file: initiator,
+    from: '} else if (owner && message.round == entry->round) {',
+    to: '} else if (owner) {',
   },
   {
     name: 'silent-members-renewed',

@@ -60,10 +60,26 @@ export default [
     slip: 'what a delivery takes off the loads is not counted',
     promise: 'no vehicle delivers more than it carries',
     file: flyer,
-    from: `&& !task_->strayed;
+    from: `ownship_.on_track(task_->plan.timed);
   if (task_->is_delivery()) ownship_.use_load();`,
-    to: `&& !task_->strayed;
+    to: `ownship_.on_track(task_->plan.timed);
   if (task_->is_delivery() && !flown) ownship_.use_load();`,
+  },
+  {
+    name: 'unseen-is-flown',
+    slip: 'a task counts as flown by where the vehicle was when it was last heard of, however long ago',
+    promise: 'what is told as done was flown as it was to be',
+    file: flyer,
+    from: 'task_->unlocated = !ownship_.was_located(task_->over_time());',
+    to: 'task_->unlocated = false;',
+  },
+  {
+    name: 'gate-passed-blindly',
+    slip: 'a delivery is committed without knowing where the vehicle is',
+    promise: 'a vehicle that is not where its plan has it does not pass its gate',
+    file: flyer,
+    from: 'if (!ownship_.was_located(now)) return;',
+    to: '',
   },
   {
     name: 'arc-left-counts',

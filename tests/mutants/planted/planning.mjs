@@ -48,10 +48,18 @@ export default [
   {
     name: 'ways-home-at-one-height',
     slip: 'orbits of vehicles at one height may be as near as their radii',
+    promise: 'nobody is left out of the ways home where there is room for all',
+    file: 'core/planning/return_holds.cpp',
+    from: 'if (distance_m(hold.ring, holds_[j]->ring) < params_.separation_horizontal_m) return false;',
+    to: 'if (distance_m(hold.ring, holds_[j]->ring) < 0.0) return false;',
+  },
+  {
+    name: 'step-past-an-arrival',
+    slip: 'two ways home are looked at in steps that leap over an arrival, from which on a vehicle is anywhere on its orbit',
     promise: 'who comes home together keeps apart',
-    file: 'core/planning/collective_return.cpp',
-    from: 'distance_m(ring, *other) >= params_.separation_horizontal_m;',
-    to: 'distance_m(ring, *other) >= 0.0;',
+    file: 'core/planning/return_track.cpp',
+    from: 'if (time_s < end_s) next_s = std::min(next_s, end_s);',
+    to: 'if (time_s < end_s) next_s = std::max(next_s, time_s);',
   },
   {
     name: 'steps-past-the-fence',
