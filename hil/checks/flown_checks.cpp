@@ -93,6 +93,16 @@ std::string delivery_name(const DeliveryFlown& d) {
   return to_string(d.run.task) + " by " + vehicle_name(d.run.vehicle);
 }
 
+/// How well it was flown is excused; that it was is the program's word still.
+void judge_told(const DeliveryFlown& d, const Limits& limits, CheckResult& result) {
+  constexpr double kStillThere = 2.0;
+  if (!d.seen || d.miss_m <= kStillThere * limits.miss_m) return excuse(d.run, result);
+  ++result.judged;
+  result.violations.push_back({d.run.vehicle, *d.run.planned,
+                               delivery_name(d) + " was told as done, though it passed " +
+                                   fixed(d.miss_m, 1) + " m from the site"});
+}
+
 void judge_pass(const DeliveryFlown& d, const Limits& limits, CheckResult& result) {
   const auto violate = [&](const std::string& what) {
     result.violations.push_back({d.run.vehicle, *d.run.planned, delivery_name(d) + what});
@@ -343,7 +353,7 @@ CheckResult check_deliveries(const RunRecord& record, const Limits& limits) {
   double bearing = 0.0;
   for (const DeliveryFlown& d : flown) {
     if (was_disturbed(record, d.run, limits)) {
-      excuse(d.run, result);
+      judge_told(d, limits, result);
       continue;
     }
     ++result.judged;

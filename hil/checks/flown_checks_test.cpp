@@ -59,6 +59,8 @@ TEST(FlownChecks, WhoWasLeftAloneOnItsWayIsExcusedAndTold) {
   EXPECT_TRUE(result.held());
   ASSERT_EQ(result.excused.size(), 1U);
   EXPECT_THAT(result.excused[0].sentence, HasSubstr("its program stood still"));
+  shift(of(record, kFromWest), {0.0, 70.0});
+  EXPECT_THAT(only_sentence(check_deliveries(record, {})), HasSubstr("was told as done, though"));
   record.left_alone.front().vehicle = kFromSouth;
   EXPECT_FALSE(check_deliveries(record, {}).held());
 }
