@@ -203,7 +203,7 @@ void take_over(const TeamMission& mission, configuration::Scenario& scenario) {
 
 /// Another release may not know how to be told its clock. Taken out last, so that what else is
 /// drawn is what it was.
-std::vector<Fault> without_clocks_of_others(std::vector<Fault> faults) {
+std::vector<Fault> without_clocks_of_others(const std::vector<Fault>& faults) {
   std::vector<Fault> kept;
   for (const Fault& fault : faults) {
     const auto* off = std::get_if<ClockOff>(&fault.what);
@@ -261,7 +261,7 @@ Result<std::vector<Fault>> spoil(configuration::Scenario& scenario, const std::s
   std::vector<Fault> faults{mission.faults.begin() + static_cast<std::ptrdiff_t>(own),
                             mission.faults.end()};
   for (Fault& fault : Draw{scenario, params}.faults()) faults.push_back(std::move(fault));
-  return without_clocks_of_others(std::move(faults));
+  return without_clocks_of_others(faults);
 }
 
 }  // namespace skein::hil
