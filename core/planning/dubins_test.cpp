@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -203,7 +204,7 @@ TEST(Dubins, RoundingFliesNoLoops) {
     };
     const double first = random.chance(0.5) ? 1.0 : -1.0;
     const double last = random.chance(0.5) ? 1.0 : -1.0;
-    const double lengths[] = {length(3.0), length(30.0), length(3.0)};
+    const std::array<double, 3> lengths{length(3.0), length(30.0), length(3.0)};
     Pose2 to = advance(advance(advance(from, first / r, lengths[0]), 0.0, lengths[1]), last / r,
                        lengths[2]);
     const double flown = lengths[0] + lengths[1] + lengths[2];
