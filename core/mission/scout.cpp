@@ -258,7 +258,7 @@ std::optional<SurveyedSite> Scout::survey(Instant now) {
     found_.push_back({site_});
     return std::nullopt;
   }
-  outbox_.report(event::SurveyDone{arrival()}, {}, survey_of(site_), plan_.timed.end_time());
+  outbox_.report(event::SurveyDone{arrival()}, {}, survey_of(site_), over);
   const Duration cut_max = ownship_.config().protocol.cut_max;
   if (sites_.led(site_.id, now - cut_max)) return std::nullopt;
   return SurveyedSite{site_, {}};

@@ -35,9 +35,9 @@ bool flyable(const TimedPath& timed, const VehicleSpec& vehicle) {
          !timed.path.segments.empty() && timed.paces.size() == timed.path.segments.size() + 1;
 }
 
-/// What is left of it from then on, or a lap of the orbit at its end.
-bool leads_out(const Fence& fence, const TimedPath& timed, Instant from) {
-  const double begin_m = timed.distance_at(std::max(from, timed.start_time));
+/// What is left of it, or a lap of the orbit at its end.
+bool leads_out(const Fence& fence, const TimedPath& timed, Instant now) {
+  const double begin_m = timed.distance_at(now);
   const double lap_m = kTwoPi / std::abs(timed.tail_curvature_per_m);
   const auto ahead = timed.piece(begin_m, std::max(begin_m, timed.path.length_m()) + lap_m);
   return !ahead || planning::first_outside(fence, *ahead);
@@ -82,7 +82,7 @@ void TrackAgent::on_return_flight(const ReturnFlight& message, Instant now) {
   const double lap_m = kTwoPi * config_.vehicle.planning_radius_m();
   const bool takes = is_way_home(message.timed, config_.vehicle, *flight_, hazards_.all(),
                                  range_left_m() - lap_m, now) &&
-                     !leads_out(config_.fence, message.timed, now);
+                     !planning::first_outside(config_.fence, message.timed);
   if (takes && flight_->return_along(message.timed, now)) return_plan_ = message.plan;
 }
 
@@ -196,7 +196,7 @@ std::string TrackAgent::keep_fence(const Fence& fence, Instant now) {
   if (flight_->started() && leads_out(fence, flight_->plan().timed, now)) {
     return "what it flies leads out of it";
   }
-  if (next_flight_ && leads_out(fence, next_flight_->plan.timed, now)) {
+  if (next_flight_ && planning::first_outside(fence, next_flight_->plan.timed)) {
     return "what it is to fly next leads out of it";
   }
   config_.fence = fence;

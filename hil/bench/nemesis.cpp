@@ -91,7 +91,7 @@ Result<void> Nemesis::step(Instant now) {
   std::erase_if(still_until_, [now](const auto& still) { return now >= still.second; });
   std::erase_if(slow_, [now](const auto& slow) { return now >= slow.second.until; });
   for (auto& [node, slow] : slow_) {
-    if (stopped_[node] && !start_at_.contains(node)) slow.stopped += now - slow.seen_at;
+    if (stopped_[node]) slow.stopped += now - slow.seen_at;
     slow.seen_at = now;
   }
   for (const auto& [node, program] : hands_.programs) set_running(node, should_run(node, now));
@@ -116,11 +116,12 @@ ProgramSpan& Nemesis::span_of(VehicleId node, ProgramSpan::Kind kind) {
 }
 
 void Nemesis::set_running(VehicleId node, bool runs) {
-  if (running(node) == nullptr) return;  // what is started anew runs
+  ChildProcess* const program = running(node);
+  if (program == nullptr) return;  // what is started anew runs
   bool& stopped = stopped_[node];
   if (stopped != runs) return;
   stopped = !runs;
-  running(node)->signal_group(runs ? SIGCONT : SIGSTOP);
+  program->signal_group(runs ? SIGCONT : SIGSTOP);
 }
 
 void Nemesis::let_go() {
