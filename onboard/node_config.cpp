@@ -34,6 +34,18 @@ mission::TrackAgentConfig track_agent(const configuration::VehicleConfig& config
   return agent;
 }
 
+bool is_on_ardupilot(const configuration::VehicleConfig& config) {
+  return config.flight_controller.kind == configuration::FlightControllerKind::ardupilot;
+}
+
+/// A plane comes down to real ground only where somebody has said that it is free.
+bool lands_by_itself(const configuration::VehicleConfig& config) {
+  const LandingSpec& landing = config.vehicle.landing;
+  const bool is_told_where = landing.x_m && landing.y_m && landing.heading_rad;
+  return !is_on_ardupilot(config) || config.vehicle.is_copter() ||
+         (is_told_where && config.vehicle.recovery == Recovery::home);
+}
+
 mission::VehicleAgentConfig vehicle_agent(const configuration::VehicleConfig& config,
                                           const std::optional<TimedPath>& route,
                                           InstanceId instance) {
@@ -49,9 +61,8 @@ mission::VehicleAgentConfig vehicle_agent(const configuration::VehicleConfig& co
   agent.fence = config.fence;
   agent.turn_lead_s = config.flight_controller.follower().turn_lead_s;
   // In still air a simulated plane is where its plan has it at once, and needs no lead.
-  agent.heeds_wind =
-      config.flight_controller.kind == configuration::FlightControllerKind::ardupilot ||
-      config.flight_controller.wind.speed_mps > 0.0;
+  agent.heeds_wind = is_on_ardupilot(config) || config.flight_controller.wind.speed_mps > 0.0;
+  agent.lands_by_itself = lands_by_itself(config);
   return agent;
 }
 
@@ -73,9 +84,7 @@ mission::VehicleNodeConfig node_config(const configuration::VehicleConfig& confi
   node.setup = configuration::setup_params(
       config, {program.substr(program.rfind(' ') + 1), codec::wire_versions()});
   node.program = std::move(program);
-  const bool ardupilot =
-      config.flight_controller.kind == configuration::FlightControllerKind::ardupilot;
-  node.flight_controller = ardupilot ? "ardupilot" : "simulated";
+  node.flight_controller = is_on_ardupilot(config) ? "ardupilot" : "simulated";
   return node;
 }
 

@@ -6,7 +6,7 @@
 
 namespace skein::mission {
 namespace {
-/// At least, between two looks at the range left. What is flown in it twice is less than an orbit.
+/// At least, between two looks at the range left.
 constexpr Duration kRangePeriod = std::chrono::seconds{1};
 
 const Failsafe::Response* response_to(CommandKind order) {
@@ -36,7 +36,7 @@ const Failsafe::Response* Failsafe::update(Instant now, const News& news) {
   }
   if (news.bar) response = on_bar(*news.bar);
   if (news.piloted) response = on_piloted(*news.piloted);
-  if (news.spare_s && watch_range(*news.spare_s, now)) response = &kRangeSpent;
+  if (news.spare && watch_range(*news.spare, now)) response = &kRangeSpent;
   if (news.left_fence && !facts_.left_fence) {
     facts_.left_fence = true;
     if (!facts_.ordered) response = &kLeftFence;
@@ -84,10 +84,10 @@ const Failsafe::Response* Failsafe::on_piloted(bool piloted) {
 }
 
 /// True when it is news that the range is spent.
-bool Failsafe::watch_range(double spare_s, Instant now) {
+bool Failsafe::watch_range(const Spare& spare, Instant now) {
   if (facts_.range_spent) return false;
-  range_again_ = now + std::max(kRangePeriod, from_seconds(spare_s));
-  facts_.range_spent = spare_s <= 0.0;
+  range_again_ = now + std::max(kRangePeriod, from_seconds(spare.lasts_s));
+  facts_.range_spent = spare.is_spent;
   return facts_.range_spent;
 }
 

@@ -102,6 +102,11 @@ class Failsafe {
                                          kPiloted,    kMayWork,    kRangeSpent,   kLeftFence,
                                          kHold,       kReturnHome, kLand,         kResume};
 
+  /// Of its range, beyond what the way home takes.
+  struct Spare {
+    bool is_spent = false;
+    double lasts_s = 0.0;  ///< surely; less than 0: nobody knows
+  };
   /// One of these at a time.
   struct News {
     bool path_barred = false;     ///< by a hazard, and there is no other way to its task
@@ -109,13 +114,12 @@ class Failsafe {
     bool id_in_use = false;       ///< another vehicle was heard under its number
     std::optional<Bar> bar = {};  ///< what keeps it from working with the others
     std::optional<bool> piloted = {};
-    std::optional<double> spare_s =
-        {};  ///< for how long it can surely fly on before it must turn for home
+    std::optional<Spare> spare = {};
     std::optional<CommandKind> order = {};  ///< new, from the operator
   };
   /// The response that the news asks for; null where it is none.
   const Response* update(Instant now, const News& news);
-  /// Is it time to look at the range again? Then News::spare_s is wanted. It costs a path to
+  /// Is it time to look at the range again? Then News::spare is wanted. It costs a path to
   /// compute, so it is asked for as rarely as it can matter.
   [[nodiscard]] bool wants_range(Instant now) const { return now >= wants_range_at(); }
   [[nodiscard]] Instant wants_range_at() const {
@@ -138,7 +142,7 @@ class Failsafe {
   [[nodiscard]] const Response* on_bar(Bar bar);
   [[nodiscard]] const Response* on_piloted(bool piloted);
   [[nodiscard]] const Response* barred() const;
-  [[nodiscard]] bool watch_range(double spare_s, Instant now);
+  [[nodiscard]] bool watch_range(const Spare& spare, Instant now);
 
   Facts facts_;
   const Rule* rule_ = nullptr;  ///< that decides

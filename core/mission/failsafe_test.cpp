@@ -17,7 +17,7 @@ TEST(Failsafe, LaterRulesTakePrecedence) {
   EXPECT_EQ(failsafe.update(now, {.id_in_use = true}), &Failsafe::kIdInUse);
   EXPECT_EQ(failsafe.update(now, {.id_in_use = true}), nullptr) << "it is news once";
   EXPECT_EQ(failsafe.action(), Action::take_up_nothing);
-  EXPECT_EQ(failsafe.update(now, {.spare_s = 0.0}), &Failsafe::kRangeSpent);
+  EXPECT_EQ(failsafe.update(now, {.spare = Failsafe::Spare{true, 0.0}}), &Failsafe::kRangeSpent);
   EXPECT_EQ(failsafe.action(), Action::come_home);
   EXPECT_EQ(failsafe.update(now, {.order = CommandKind::hold}), &Failsafe::kHold);
   EXPECT_EQ(failsafe.action(), Action::obey);
@@ -85,16 +85,17 @@ TEST(Failsafe, ABarredPathEndsTheTaskAndNothingElse) {
 TEST(Failsafe, LooksAtTheRangeAsRarelyAsItCanMatter) {
   Failsafe failsafe;
   EXPECT_TRUE(failsafe.wants_range(at_seconds(0.0)));
-  EXPECT_EQ(failsafe.update(at_seconds(0.0), {.spare_s = 60.0}), nullptr);
+  EXPECT_EQ(failsafe.update(at_seconds(0.0), {.spare = Failsafe::Spare{false, 60.0}}), nullptr);
   EXPECT_FALSE(failsafe.wants_range(at_seconds(59.9)));
   EXPECT_TRUE(failsafe.wants_range(at_seconds(60.0)));
   failsafe.look_again(at_seconds(5.0));
   EXPECT_TRUE(failsafe.wants_range(at_seconds(5.0)));
-  EXPECT_EQ(failsafe.update(at_seconds(5.0), {.spare_s = 0.01}), nullptr);
+  EXPECT_EQ(failsafe.update(at_seconds(5.0), {.spare = Failsafe::Spare{false, -10.0}}), nullptr);
   EXPECT_FALSE(failsafe.wants_range(at_seconds(5.9))) << "but not at every step";
-  EXPECT_EQ(failsafe.update(at_seconds(6.0), {.spare_s = -1.0}), &Failsafe::kRangeSpent);
+  EXPECT_EQ(failsafe.update(at_seconds(6.0), {.spare = Failsafe::Spare{true, -20.0}}),
+            &Failsafe::kRangeSpent);
   EXPECT_FALSE(failsafe.wants_range(at_seconds(100.0))) << "spent is spent";
-  EXPECT_EQ(failsafe.update(at_seconds(100.0), {.spare_s = 50.0}), nullptr);
+  EXPECT_EQ(failsafe.update(at_seconds(100.0), {.spare = Failsafe::Spare{false, 50.0}}), nullptr);
   EXPECT_TRUE(failsafe.facts().range_spent);
 }
 

@@ -331,6 +331,20 @@ void Flight::hold(const std::vector<Hazard>& hazards, Instant now) {
   hold_from(now + handover_, hazards, now);
 }
 
+void Flight::orbit_anew(const std::vector<Hazard>& hazards, Instant now) {
+  const Instant at = now + handover_;
+  const TimedPath& timed = plan_.timed;
+  const double from_m = timed.distance_at(at);
+  const auto rest = timed.piece(from_m, std::max(from_m, timed.path.length_m()));
+  if (!rest) return;
+  Path way = *rest;
+  const double tail = append_hold(way, hazards);
+  const bool homing = homing_;
+  if (!continue_with(at, way, tail, now)) return;
+  homing_ = homing;
+  at_will_ = true;
+}
+
 void Flight::hold_from(Instant at, const std::vector<Hazard>& hazards, Instant now) {
   Path way = forced_way(pose_at(at), hazards);
   const double tail = append_hold(way, hazards);

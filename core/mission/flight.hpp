@@ -71,6 +71,9 @@ class Flight {
                      const std::optional<Pace>& pace = std::nullopt);
   /// The same without a next path: an orbit from here on, or from where there is room for one.
   void hold(const std::vector<Hazard>& hazards, Instant now);
+  /// What is flown stays as it is, but for the orbit at its end, or from here on: by turns as they
+  /// are planned now.
+  void orbit_anew(const std::vector<Hazard>& hazards, Instant now);
   /// Along what is left of the search route, as far as `range_m` lasts there and home again, then
   /// an orbit where that ends.
   void search(const std::vector<Hazard>& hazards, double range_m, Instant now);

@@ -33,6 +33,16 @@ Landing landing_of(const VehicleSpec& vehicle, const Pose2& start) {
   return landing;
 }
 
+Landing landing_after(const VehicleSpec& vehicle, const Pose2& begin) {
+  VehicleSpec here = vehicle;
+  const double ahead_m = vehicle.is_copter() ? 0.0 : vehicle.landing.approach_m;
+  const Vec2 down = begin.position() + ahead_m * unit_vector(begin.heading_rad);
+  here.landing.x_m = down.x();
+  here.landing.y_m = down.y();
+  here.landing.heading_rad = begin.heading_rad;
+  return landing_of(here, begin);
+}
+
 bool is_open(const Landing& landing, const std::vector<Hazard>& hazards, double margin_m,
              const Fence& fence) {
   std::vector<Hazard> wide = hazards;

@@ -16,6 +16,9 @@ namespace skein::mission {
 /// Where a vehicle lands whose first flight plan began there.
 [[nodiscard]] Landing landing_of(const VehicleSpec& vehicle, const Pose2& start);
 
+/// The same on a final approach that begins there, wherever the configuration has it.
+[[nodiscard]] Landing landing_after(const VehicleSpec& vehicle, const Pose2& begin);
+
 /// Does a plane's way down, the circle and the final approach, keep `margin_m` from the hazards and
 /// within the fence?
 [[nodiscard]] bool is_open(const Landing& landing, const std::vector<Hazard>& hazards,

@@ -145,6 +145,100 @@ TEST(LandingOrder, AnApproachFromBeyondTheFenceIsNotFlown) {
   EXPECT_EQ(count_trouble(vehicle.events, event::Trouble::landing_barred), 1);
 }
 
+/// With range for a minute.
+VehicleAgentConfig short_of_range(Recovery recovery) {
+  VehicleAgentConfig config = lander();
+  config.vehicle.range_m = 1500.0;
+  config.vehicle.recovery = recovery;
+  return config;
+}
+
+/// Until it comes down, within its range.
+void fly_to_its_end(Lander& vehicle) {
+  while (!vehicle.plan.lands && vehicle.state.distance_flown_m < 3000.0) vehicle.fly(0.0);
+}
+
+TEST(LandingByItself, WhomNobodyLandsAtHomeComesDownThereWithinItsRange) {
+  Lander vehicle{short_of_range(Recovery::home)};
+  fly_to_its_end(vehicle);
+  ASSERT_TRUE(vehicle.plan.lands);
+  EXPECT_LE(vehicle.state.distance_flown_m, 1500.0);
+  EXPECT_GE(vehicle.state.distance_flown_m, 1500.0 - 1.2 * kTwoPi * 66.0) << "and no sooner";
+  EXPECT_EQ(vehicle.plan.landing.x_m, 0.0);
+  EXPECT_EQ(count_trouble(vehicle.events, event::Trouble::lands_by_itself), 1);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::landing);
+  vehicle.state.phase = FlightPhase::landed;
+  vehicle.fly(5.0);
+  EXPECT_EQ(vehicle.agent.activity(), Activity::landed);
+}
+
+TEST(LandingByItself, WhoIsRecoveredAnywhereComesDownWhereItsRangeEnds) {
+  VehicleAgentConfig config = short_of_range(Recovery::anywhere);
+  config.vehicle.landing = {.x_m = 0.0, .y_m = 0.0};
+  Lander vehicle{config};
+  fly_to_its_end(vehicle);
+  ASSERT_TRUE(vehicle.plan.lands);
+  EXPECT_LE(vehicle.state.distance_flown_m, 1500.0);
+  // Out of the orbit that it flies.
+  const Landing& landing = vehicle.plan.landing;
+  const Vec2 begin = approach_begin(landing);
+  EXPECT_LE((begin - vehicle.state.position().horizontal()).norm(), 2.0 * landing.radius_m + 1.0);
+  EXPECT_GT(begin.x(), 500.0);
+
+  VehicleSpec copter = config.vehicle;
+  copter.airframe = Airframe::copter;
+  EXPECT_EQ(landing_after(copter, {30.0, 40.0, 1.0}).x_m, 30.0);
+}
+
+TEST(LandingByItself, TheOperatorsWordStands) {
+  Lander ordered{short_of_range(Recovery::home)};
+  ordered.fly(20.0);
+  ordered.order(CommandKind::return_home);
+  ordered.order(CommandKind::land);
+  fly_to_its_end(ordered);
+  EXPECT_TRUE(ordered.plan.lands);
+  EXPECT_EQ(count_trouble(ordered.events, event::Trouble::lands_by_itself), 0);
+
+  Lander stays{short_of_range(Recovery::anywhere)};
+  stays.fly(50.0);
+  stays.order(CommandKind::hold);
+  fly_to_its_end(stays);
+  EXPECT_FALSE(stays.plan.lands);
+  stays.order(CommandKind::land);
+  stays.fly(5.0);
+  EXPECT_TRUE(stays.plan.lands) << "where it is: it has no range for its way home";
+}
+
+TEST(LandingByItself, WhoIsLeftToItsPilotOrbits) {
+  VehicleAgentConfig config = short_of_range(Recovery::home);
+  config.lands_by_itself = false;
+  Lander vehicle{config};
+  fly_to_its_end(vehicle);
+  EXPECT_FALSE(vehicle.plan.lands);
+  vehicle.order(CommandKind::land);
+  vehicle.fly(5.0);
+  EXPECT_TRUE(vehicle.plan.lands);
+}
+
+TEST(LandingByItself, WaitsForTheAirBelowAsLongAsItsRangeLasts) {
+  Lander vehicle{short_of_range(Recovery::home)};
+  while (!vehicle.plan.lands && vehicle.state.distance_flown_m < 3000.0) {
+    fly_above(vehicle, kFlownStep_s, 12.0);
+  }
+  ASSERT_TRUE(vehicle.plan.lands);
+  EXPECT_LE(vehicle.state.distance_flown_m, 1500.0);
+  EXPECT_GE(vehicle.state.distance_flown_m, 1500.0 - 0.1 * kTwoPi * 66.0 - 2.0 * 12.5);
+}
+
+TEST(LandingByItself, IsToldWhereItIsBarred) {
+  VehicleAgentConfig config = short_of_range(Recovery::home);
+  config.hazards.push_back({{1}, {-400.0, -120.0}, 60.0});  // on the final approach
+  Lander vehicle{config};
+  fly_to_its_end(vehicle);
+  EXPECT_FALSE(vehicle.plan.lands);
+  EXPECT_EQ(count_trouble(vehicle.events, event::Trouble::landing_barred), 1);
+}
+
 TEST(LandingOrder, WhoHasLandedIsSentNowhere) {
   Lander vehicle;
   vehicle.order(CommandKind::land);

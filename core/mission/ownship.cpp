@@ -122,8 +122,23 @@ bool Ownship::at_home(Instant now) const {
   return flight_.at_home(now) && on_track(flight_.plan().timed);
 }
 
-bool Ownship::land() {
-  const Landing landing = landing_of(spec(), flight_.first_pose());
+bool Ownship::in_orbit(Instant now) const {
+  const TimedPath& timed = flight_.plan().timed;
+  return now >= timed.end_time() && on_track(timed);
+}
+
+bool Ownship::land(Instant now) {
+  if (at_home(now)) return come_down(landing_of(spec(), flight_.first_pose()));
+  constexpr int kDirections = 8;
+  const Duration lap = from_seconds(lap_m() / spec().cruise_speed_mps);
+  for (int i = 0; i < kDirections; ++i) {
+    const Pose2 begin = flight_.pose_at(now + i * lap / kDirections);
+    if (come_down(landing_after(spec(), begin))) return true;
+  }
+  return false;
+}
+
+bool Ownship::come_down(const Landing& landing) {
   if (spec().is_copter()) {
     descent_.emplace(landing, spec().height_m, ground_m_.value_or(0.0));
     return true;
@@ -164,6 +179,14 @@ bool Ownship::plans_anew(Instant now) {
   if (!flight_.at_will()) return false;
   const bool searches = flight_.searching() || flight_.stands_by();
   searches ? search(now) : hold(now);  // RelayOrbit finds another place
+  return true;
+}
+
+bool Ownship::plans_for_wind(Instant now) {
+  const TimedPath& timed = flight_.plan().timed;
+  const bool is_nearly_there = timed.path.length_m() - timed.distance_at(now) < lap_m();
+  if (!flight_.homing() || !is_nearly_there) return plans_anew(now);
+  flight_.orbit_anew(hazards(), now);
   return true;
 }
 
@@ -232,16 +255,13 @@ double Ownship::range_left(Instant at) const {
   return range_.left_m() - until_then;
 }
 
-double Ownship::range_to_spend(Instant at) const {
-  return range_left(at) - kTwoPi * planning_radius_m();
-}
+double Ownship::range_to_spend(Instant at) const { return range_left(at) - lap_m(); }
 
 double Ownship::range_for(const Site& site, Instant at) const {
   if (!comes_home()) return range_to_spend(at);
   const Pose2 there{site.position.x(), site.position.y(), 0.0};
-  const double turn_m = kTwoPi * planning_radius_m();
   return range_to_spend(at) - flight_.way_home_m(there, hazards()) - spec().assess_radius_m -
-         turn_m;
+         lap_m();
 }
 
 double Ownship::range_for_route(const TimedPath& route, Instant at) const {
@@ -252,10 +272,15 @@ double Ownship::range_for_route(const TimedPath& route, Instant at) const {
   return range_to_spend(at) - (end.position() - route.path.start.position()).norm();
 }
 
-double Ownship::spare_s(Instant now) const {
-  const double spare_m = range_to_spend(now) - flight_.way_home_m(flight_.pose_at(now), hazards());
-  // A metre of flight brings it at most a metre further from home.
-  return spare_m / (2.0 * spec().cruise_speed_mps);
+/// A metre of flight brings it at most a metre further from home, and its turn towards it takes a
+/// lap at most.
+double Ownship::lasts_s(double spare_m) const {
+  return (spare_m - lap_m()) / (2.0 * spec().cruise_speed_mps);
+}
+
+double Ownship::spare_m(Instant now) const {
+  const double second_m = 2.0 * spec().cruise_speed_mps;
+  return range_to_spend(now) - flight_.way_home_m(flight_.pose_at(now), hazards()) - second_m;
 }
 
 event::RangeSpent Ownship::range_spent(Instant now) const {

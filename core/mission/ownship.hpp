@@ -6,6 +6,7 @@
 
 #include "flight.hpp"
 #include "landing.hpp"
+#include "skein/base/angles.hpp"
 #include "skein/mission/events.hpp"
 #include "skein/mission/guidance.hpp"
 #include "skein/mission/range_budget.hpp"
@@ -82,10 +83,15 @@ class Ownship {
   /// A search, an orbit or a way home, from now on. False, and nothing changed, where others count
   /// with what it flies.
   bool plans_anew(Instant now);
+  /// The same for the wind there is by now; who is nearly home goes around no more than it must.
+  bool plans_for_wind(Instant now);
   /// Is it in its orbit at home, where the plan has it?
   [[nodiscard]] bool at_home(Instant now) const;
-  /// From there it comes down. False, and nothing changed, where a hazard bars that.
-  bool land();
+  /// Is it in the orbit to which its plan leads?
+  [[nodiscard]] bool in_orbit(Instant now) const;
+  /// From its orbit it comes down, at home or in whichever direction from here is open. False, and
+  /// nothing changed, where a hazard bars that.
+  bool land(Instant now);
   /// Comes down, or has.
   [[nodiscard]] bool landing() const { return descent_.has_value() || flight_.landing(); }
   /// Leaves its own way home for that one, where it is one that it can fly. Else false.
@@ -128,14 +134,19 @@ class Ownship {
   [[nodiscard]] bool can(const TaskId& task) const;
   [[nodiscard]] bool comes_home() const { return spec().recovery == Recovery::home; }
   [[nodiscard]] double range_left(Instant at) const;
-  /// Without what is kept for an orbit at home, for whoever lands it.
+  /// Of an orbit.
+  [[nodiscard]] double lap_m() const { return kTwoPi * planning_radius_m(); }
+  /// Without the lap that is kept for whoever lands it.
   [[nodiscard]] double range_to_spend(Instant at) const;
   /// What a task at that site may use up, so that it can come home from any end of it.
   [[nodiscard]] double range_for(const Site& site, Instant at) const;
   /// What it may use to the end of that route and on the way to it.
   [[nodiscard]] double range_for_route(const TimedPath& route, Instant at) const;
-  /// For how long it can surely fly on before it must turn for home; 0 or less: it must now.
-  [[nodiscard]] double spare_s(Instant now) const;
+  /// What is left of its range beyond the way home, a lap and a second's flight; 0 or less: it must
+  /// turn for home now.
+  [[nodiscard]] double spare_m(Instant now) const;
+  /// For how long that lasts, wherever it flies and however its nose points then.
+  [[nodiscard]] double lasts_s(double spare_m) const;
   /// What is told when it must.
   [[nodiscard]] event::RangeSpent range_spent(Instant now) const;
 
@@ -159,6 +170,7 @@ class Ownship {
  private:
   [[nodiscard]] bool is_at_route() const;
   [[nodiscard]] Pose2 begins_at(const VehicleState& state) const;
+  bool come_down(const Landing& landing);
 
   VehicleAgentConfig config_;
   VehicleState state_;

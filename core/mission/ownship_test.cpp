@@ -14,7 +14,7 @@ namespace {
 TEST(Ownship, LooksAtItsRangeAgainWhileItCanStillComeHome) {
   PartsBench bench;
   const double turn_m = kTwoPi * bench.ownship.planning_radius_m();
-  const double there_m = bench.ownship.spare_s(bench.now) * kTestSpeed_mps;
+  const double there_m = bench.ownship.lasts_s(bench.ownship.spare_m(bench.now)) * kTestSpeed_mps;
   EXPECT_LE(2.0 * there_m + turn_m, bench.ownship.range_left(bench.now));
   EXPECT_GT(2.0 * there_m + turn_m, 0.9 * bench.ownship.range_left(bench.now)) << "and no sooner";
 }

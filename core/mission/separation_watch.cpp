@@ -2,8 +2,10 @@
 #include "skein/mission/separation_watch.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
+#include "skein/base/angles.hpp"
 #include "skein/mission/guidance.hpp"
 #include "skein/mission/shown_state.hpp"
 
@@ -46,12 +48,30 @@ constexpr double kTurns_mps2 = 5.0;
 /// Whoever comes down looks at heights so far below.
 constexpr double kBelow_m = 50.0;
 constexpr double kBelowStep_s = 0.25;
+constexpr double kLandsStep_s = 0.5;
+constexpr double kTurnMemory_s = 0.5;
 constexpr Duration kWayPeriod = std::chrono::seconds{1};
 /// So near to it, it is back in its layer.
 constexpr double kBack_m = 2.0;
 
 Vec2 position_at(const VehicleState& state, double seconds) {
   return Vec2{state.x_m, state.y_m} + seconds * Vec2{state.velocity_mps().head<2>()};
+}
+
+/// In a turn at that rate.
+Vec2 turned_at(const VehicleState& state, double radps, double seconds) {
+  const double half_rad = 0.5 * radps * seconds;
+  if (std::abs(half_rad) < 1e-6) return position_at(state, seconds);
+  const double chord_m = state.groundspeed_mps * seconds * std::sin(half_rad) / half_rad;
+  return Vec2{state.x_m, state.y_m} + chord_m * unit_vector(state.course_rad + half_rad);
+}
+
+/// The rate at which it turns over the ground, after another state; gusts turn it a little, too.
+double turned_since(double radps, const VehicleState& from, const VehicleState& to) {
+  const double s = to_seconds(to.time - from.time);
+  if (s <= 0.0) return radps;
+  const double share = std::min(1.0, s / kTurnMemory_s);
+  return radps + share * (wrap_pi(to.course_rad - from.course_rad) / s - radps);
 }
 
 }  // namespace
@@ -96,7 +116,9 @@ void SeparationWatch::on_telemetry(const Telemetry& other, const VehicleState& o
   Other& known = known_[other.vehicle];
   const double since_s = to_seconds(other.state.time - known.state.time);
   if (since_s > 0.0) {
-    known.climb_mps = found == known_.end() ? 0.0 : (other.state.z_m - known.state.z_m) / since_s;
+    const bool is_first = found == known_.end();
+    known.climb_mps = is_first ? 0.0 : (other.state.z_m - known.state.z_m) / since_s;
+    known.turn_radps = is_first ? 0.0 : turned_since(known.turn_radps, known.state, other.state);
   }
   const ActivityDetail in_detail = other.detail;
   known.gives_way_too = in_detail == ActivityDetail::avoiding_traffic;
@@ -127,6 +149,8 @@ std::optional<EventBody> SeparationWatch::poll_event() {
 }
 
 void SeparationWatch::step(const Self& self, Instant now) {
+  if (last_) turn_radps_ = turned_since(turn_radps_, *last_, self.state);
+  last_ = self.state;
   if (!has_taken_off(self.state)) {  // it has landed
     known_.clear();
     target_.reset();
@@ -229,23 +253,37 @@ void SeparationWatch::go_on(const Self& self, Instant now) {
   if (way_m == base_m_ || std::abs(way_m - way_m_) >= kClearHeight_m) way_m_ = way_m;
 }
 
-bool SeparationWatch::is_free_below(const VehicleState& own, Instant now) const {
+bool SeparationWatch::is_free_below(const VehicleState& own, Turns turns, Instant now) const {
   return std::ranges::none_of(
-      known_, [&](const auto& entry) { return can_be_below(own, entry.second, now); });
+      known_, [&](const auto& entry) { return can_be_below(own, entry.second, turns, now); });
 }
 
-bool SeparationWatch::can_be_below(const VehicleState& own, const Other& other, Instant now) const {
+bool SeparationWatch::can_be_below(const VehicleState& own, const Other& other, Turns turns,
+                                   Instant now) const {
   const double below_m = own.z_m - other.state.z_m;
-  if (below_m <= 0.0 || now - other.heard > kForgotten) return false;
+  // Who comes down already stays as much above or below it, or nearly.
+  const bool lands = other.activity == Activity::landing && std::abs(below_m) < kBelow_m;
+  if ((below_m <= 0.0 && !lands) || now - other.heard > kForgotten) return false;
   const double age_s = to_seconds(now - other.heard + other.delay);
-  const double from_s = std::max(0.0, below_m - params_.separation_vertical_m) / kSinksMost_mps;
-  const double to_s = std::min(to_seconds(params_.separation_look_ahead),
-                               (below_m + params_.separation_vertical_m) / kSinksLeast_mps);
+  const double look_s = to_seconds(params_.separation_look_ahead);
+  const double from_s =
+      lands ? 0.0 : std::max(0.0, below_m - params_.separation_vertical_m) / kSinksMost_mps;
+  const double to_s =
+      lands ? look_s
+            : std::min(look_s, (below_m + params_.separation_vertical_m) / kSinksLeast_mps);
+  const auto near = [&](double s) {
+    const double other_s = age_s + s;
+    if (turns == Turns::as_now) {
+      const Vec2 apart =
+          turned_at(other.state, other.turn_radps, other_s) - turned_at(own, turn_radps_, s);
+      return apart.norm() < kClearFactor * params_.separation_horizontal_m + kMargin_mps * other_s;
+    }
+    const double turned_m = 0.5 * kTurns_mps2 * (s * s + other_s * other_s);
+    const Vec2 apart = position_at(other.state, other_s) - position_at(own, s);
+    return apart.norm() < params_.separation_horizontal_m + turned_m;
+  };
   for (int step = 0; from_s + step * kBelowStep_s <= to_s; ++step) {
-    const double s = from_s + step * kBelowStep_s;
-    const double turned_m = 0.5 * kTurns_mps2 * (s * s + (s + age_s) * (s + age_s));
-    const Vec2 apart = position_at(other.state, age_s + s) - position_at(own, s);
-    if (apart.norm() < params_.separation_horizontal_m + turned_m) return true;
+    if (near(from_s + step * kBelowStep_s)) return true;
   }
   return false;
 }
@@ -254,25 +292,52 @@ SeparationWatch::Approach SeparationWatch::approach(const Self& self, const Othe
                                                     Instant now) const {
   const double age_s = to_seconds(now - other.heard + other.delay);
   const double own_age_s = std::clamp(to_seconds(now - self.state.time), 0.0, 1.0);
-  const Vec2 apart = position_at(other.state, age_s) - position_at(self.state, own_age_s);
-  const Vec2 closing =
-      Vec2{other.state.velocity_mps().head<2>()} - Vec2{self.state.velocity_mps().head<2>()};
-  const double speed2 = closing.squaredNorm();
-  Approach a;
-  if (speed2 > 0.0) {
-    a.in_s =
-        std::clamp(-apart.dot(closing) / speed2, 0.0, to_seconds(params_.separation_look_ahead));
-  }
-  a.horizontal_m = (apart + a.in_s * closing).norm();
+  const bool lands = other.activity == Activity::landing;
+  const auto apart_at = [&](double s) -> Vec2 {
+    if (!lands) {
+      return position_at(other.state, age_s + s) - position_at(self.state, own_age_s + s);
+    }
+    return turned_at(other.state, other.turn_radps, age_s + s) -
+           turned_at(self.state, turn_radps_, own_age_s + s);
+  };
   // Others stay at their height, or give way; who lands comes down all the while.
-  const double sinks_mps =
-      other.activity == Activity::landing ? std::max(0.0, -other.climb_mps) : 0.0;
-  a.height_m = other.state.z_m - sinks_mps * (age_s + a.in_s);
+  const double sinks_mps = lands ? std::max(0.0, -other.climb_mps) : 0.0;
+  const auto height_at = [&](double s) { return other.state.z_m - sinks_mps * (age_s + s); };
+  Approach a;
+  a.in_s = lands ? nearest_s(apart_at, [&](double s) { return height_at(s) - self.state.z_m; })
+                 : closest_s(self, other, apart_at(0.0));
+  a.horizontal_m = apart_at(a.in_s).norm();
+  a.height_m = height_at(a.in_s);
   a.around_m = sinks_mps * kAround_s;
   a.vertical_m = std::max(0.0, std::abs(a.height_m - self.state.z_m) - a.around_m);
   a.margin_m = kMargin_mps * (age_s + a.in_s);
   a.height_margin_m = std::min(kHeightMarginMost_m, kHeightMargin_mps * age_s);
   return a;
+}
+
+/// When two that fly straight on are closest.
+double SeparationWatch::closest_s(const Self& self, const Other& other, const Vec2& apart) const {
+  const Vec2 closing =
+      Vec2{other.state.velocity_mps().head<2>()} - Vec2{self.state.velocity_mps().head<2>()};
+  const double speed2 = closing.squaredNorm();
+  if (speed2 <= 0.0) return 0.0;
+  return std::clamp(-apart.dot(closing) / speed2, 0.0, to_seconds(params_.separation_look_ahead));
+}
+
+/// When they are nearest by their minima, as both turn and the other one comes down.
+template <class Apart, class Above>
+double SeparationWatch::nearest_s(const Apart& apart_at, const Above& above_at) const {
+  double nearest = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (int step = 0; step * kLandsStep_s <= to_seconds(params_.separation_look_ahead); ++step) {
+    const double s = step * kLandsStep_s;
+    const double minima = std::max(apart_at(s).norm() / params_.separation_horizontal_m,
+                                   std::abs(above_at(s)) / params_.separation_vertical_m);
+    if (minima >= least) continue;
+    least = minima;
+    nearest = s;
+  }
+  return nearest;
 }
 
 bool SeparationWatch::breaks(const Approach& a) const {

@@ -37,9 +37,9 @@ void VehicleAgent::Impl::watch_wind(const VehicleState& state, Instant now) {
     outbox.report(event::VehicleTrouble{event::Trouble::turns_not_held}, {}, {}, now);
   }
   const Flight& flight = ownship_.flight();
-  if (is_news && flight.started() && flight.at_will() && !ownship_.landing()) {
-    ownship_.plans_anew(now);
-  }
+  if (!is_news || !flight.started()) return;
+  failsafe_.look_again(now);
+  if (flight.at_will() && !ownship_.landing()) ownship_.plans_for_wind(now);
 }
 
 void VehicleAgent::Impl::on_message(const Message& message, Instant now) {
@@ -251,8 +251,8 @@ Instant VehicleAgent::Impl::scout_timeout() const {
 Instant VehicleAgent::Impl::quiet_until(Instant now) const {
   const Flight& flight = ownship_.flight();
   const bool busy = leader_.leading() || leader_.has_output() || flyer_.has_output();
-  const bool looks =
-      separation_.watches() || traffic_.watches() || lands_ || ownship_.config().fence.exists();
+  const bool looks = separation_.watches() || traffic_.watches() || lands_ ||
+                     failsafe_.facts().range_spent || ownship_.config().fence.exists();
   if (!flight.started() || busy || routes_.awaits() || looks) return now;
   Instant next = std::min({leader_.next_timeout(), flyer_.quiet_until(may_lead(), now),
                            scout_timeout(), idle_until(now)});

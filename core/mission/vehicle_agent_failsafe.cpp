@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // News for the failsafe, and what the vehicle does because of it.
+#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -11,6 +12,10 @@ namespace {
 /// Within that it has heard those below, and waits for them no longer than to that.
 constexpr Duration kHearsOthers = std::chrono::seconds{2};
 constexpr Duration kWaitsToLand = std::chrono::seconds{60};
+/// Laps that are left of its range: then it is content with who is free as all turn now; with less
+/// it waits no longer.
+constexpr double kLapsToChoose = 0.7;
+constexpr double kLapsLeast = 0.1;
 
 }  // namespace
 
@@ -33,20 +38,44 @@ void VehicleAgent::Impl::obey(CommandKind order, Instant now) {
   if (response != nullptr) respond(*response, now);
 }
 
-/// By order, where it is at home: else it is on its way there. It waits until the air below is
-/// free, though not for ever: who is below one that lands gives way.
+/// In its orbit at home, or in the one where its range has ended and it was not told to stay.
+bool VehicleAgent::Impl::flight_ends(Instant now) const {
+  if (ownship_.at_home(now)) return true;
+  const bool stays = failsafe_.in(Failsafe::Action::obey) && !lands_;
+  return ends_anywhere() && !stays && ownship_.in_orbit(now);
+}
+
+/// By order, or since its range is spent. It hears those below, and waits until the air there is
+/// free, and by itself until it leads nobody; though not for ever, nor beyond its range: who is
+/// below one that lands gives way.
 void VehicleAgent::Impl::come_down(Instant now) {
-  const bool waits = lands_ && !ownship_.landing();
+  const Failsafe::Facts& facts = failsafe_.facts();
+  const bool by_itself = facts.range_spent && !facts.piloted && ownship_.config().lands_by_itself;
+  const bool waits = !ownship_.landing() && (lands_ || by_itself);
   separation_.look_below(waits);
-  if (!waits || !ownship_.at_home(now)) {
+  if (!waits) {
+    hears_below_at_.reset();
     may_land_at_.reset();
     return;
   }
-  if (!may_land_at_) may_land_at_ = now + kHearsOthers;
-  const bool is_free = separation_.is_free_below(ownship_.state(), now);
-  if (now < *may_land_at_ || (!is_free && now < *may_land_at_ + kWaitsToLand)) return;
-  if (ownship_.land() || std::exchange(told_barred_, true)) return;
-  outbox.report(event::VehicleTrouble{event::Trouble::landing_barred}, {}, {}, now);
+  if (!hears_below_at_) hears_below_at_ = now + kHearsOthers;
+  if (!flight_ends(now)) return;
+  if (!may_land_at_) may_land_at_ = std::max(now, *hears_below_at_);
+  if (now < *may_land_at_) return;
+  const double laps_left = ownship_.range_left(now) / ownship_.lap_m();
+  const bool can_wait = now < *may_land_at_ + kWaitsToLand && laps_left > kLapsLeast;
+  using Turns = SeparationWatch::Turns;
+  const Turns turns = laps_left > kLapsToChoose ? Turns::whatever : Turns::as_now;
+  const bool is_free =
+      (lands_ || !leader_.leading()) && separation_.is_free_below(ownship_.state(), turns, now);
+  if (can_wait && !is_free) return;
+  std::optional<event::Trouble> trouble;
+  if (!ownship_.land(now)) {
+    if (!std::exchange(told_barred_, true)) trouble = event::Trouble::landing_barred;
+  } else if (!lands_) {
+    trouble = event::Trouble::lands_by_itself;
+  }
+  if (trouble) outbox.report(event::VehicleTrouble{*trouble}, {}, {}, now);
 }
 
 /// With the others, and only while the operator's order to come home is what it obeys.
@@ -159,7 +188,9 @@ void VehicleAgent::Impl::watch_range(Instant now) {
   if (facts.piloted) leader_.hand_on(coalition::Reason::piloted, now);
   say_last_words(now);
   if (!failsafe_.wants_range(now) || flyer_.in_run()) return;
-  const auto* response = failsafe_.update(now, {.spare_s = ownship_.spare_s(now)});
+  const double spare_m = ownship_.spare_m(now);
+  const auto* response =
+      failsafe_.update(now, {.spare = Failsafe::Spare{spare_m <= 0.0, ownship_.lasts_s(spare_m)}});
   if (response == nullptr) return;
   outbox.report(ownship_.range_spent(now), {}, {}, now);
   respond(*response, now);
@@ -205,7 +236,7 @@ void VehicleAgent::Impl::respond(const Failsafe::Response& response, Instant now
     case Failsafe::Manoeuvre::come_home:
       return ownship_.come_home(now);
     case Failsafe::Manoeuvre::land:
-      if (!ownship_.flight().homing()) ownship_.fly_home(now);
+      if (!ownship_.flight().homing() && !ends_anywhere()) ownship_.fly_home(now);
       return come_down(now);
     case Failsafe::Manoeuvre::search:
       if (flyer_.flying() || scout_.flying()) return;

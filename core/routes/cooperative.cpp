@@ -44,7 +44,9 @@ Result<void> validate_vehicle(const RouteProblem& problem, const RouteVehicle& v
   if (!(v.climb_max > 0.0)) return Error{name(v) + ": the steepest climb must be above 0"};
   if (!(v.speed_mps > 0.0)) return Error{name(v) + ": the speed must be above 0"};
   if (!(v.turn_radius_m > 0.0)) return Error{name(v) + ": the turn radius must be above 0"};
-  if (!(v.range_m > 0.0)) return Error{name(v) + ": the range must be above 0"};
+  if (!(v.range_m > 0.0))
+    return Error{name(v) +
+                 ": its range leaves nothing for a way to the site; give it a greater range_m"};
   if (!(v.start_cone_rad >= 0.0)) return Error{name(v) + ": the start cone must not be negative"};
   for (const RouteHazard& h : problem.hazards) {
     if (problem.closed(h) && (h.centre - v.start).norm() < h.radius_m + problem.rules.clearance_m) {

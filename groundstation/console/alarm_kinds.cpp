@@ -130,10 +130,9 @@ void find_reserve(const Scene& in, std::vector<Found>& found) {
 
 void find_overdrawn(const Scene& in, std::vector<Found>& found) {
   for (const auto& [id, entry] : in.fleet.vehicles()) {
-    if (!entry.telemetry || entry.telemetry->range_left_m >= 0.0 ||
-        is_on_ground(state_of(*entry.telemetry))) {
-      continue;
-    }
+    if (!entry.telemetry || entry.telemetry->range_left_m >= 0.0) continue;
+    const ShownState state = state_of(*entry.telemetry);
+    if (state == ShownState::landing || is_on_ground(state)) continue;
     found.push_back(
         {{AlarmKind::range_overdrawn, id}, in.now, name_of(id) + ": its range is overdrawn"});
   }
@@ -435,7 +434,7 @@ constexpr std::array<KindRow, static_cast<std::size_t>(AlarmKind::count)> kRows{
      kSteady,
      "fleet",
      {kReturn, kLand},
-     "land it at home, or have it recovered where it holds",
+     "land it at home, or have it recovered where it holds: at the end of its range it lands there",
      &find_reserve},
     {range_overdrawn,
      "range_overdrawn",

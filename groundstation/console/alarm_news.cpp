@@ -155,6 +155,7 @@ struct AlarmNews::Reader {
       case event::Trouble::untimely:
       case event::Trouble::route_not_flown:
       case event::Trouble::turns_not_held:
+      case event::Trouble::lands_by_itself:
       case event::Trouble::count:
         return tell();
     }

@@ -186,7 +186,7 @@ class Bench {
       say({});
     }
     outcome_.ended_at = progress_.now;
-    outcome_.finished = mission_done();
+    outcome_.finished = mission_.over(progress_.now);
     outcome_.interrupted = InterruptWatch::interrupted();
     return stop();
   }
@@ -653,15 +653,10 @@ class Bench {
     if (const auto news = to_land_.give(control_socket_, now)) say(*news);
   }
 
-  [[nodiscard]] bool mission_done() const {
-    return mission_.work_done(progress_.now) &&
-           (scenario_.ends == configuration::Ending::in_the_air || mission_.all_landed());
-  }
-
   [[nodiscard]] bool finished() {
     if (InterruptWatch::interrupted() || outcome_.quit || !outcome_.deaths.empty()) return true;
     if (progress_.now >= Instant{} + scenario_.duration_max) return true;
-    if (!mission_done() || nemesis_.anybody_down()) return false;
+    if (!mission_.over(progress_.now) || nemesis_.anybody_down()) return false;
     if (!options_.faults.empty() && !outcome_.healed_at) return false;
     if (!stop_at_) stop_at_ = progress_.now + kAfterwards;
     return progress_.now >= *stop_at_;

@@ -72,4 +72,11 @@ bool MissionWatch::all_landed() const {
   });
 }
 
+bool MissionWatch::over(Instant now) const {
+  const bool nobody_flies =
+      !scenario_.flies_formation() && landed_.size() == scenario_.vehicles.size();
+  const bool in_the_air = scenario_.ends == configuration::Ending::in_the_air;
+  return nobody_flies || (work_done(now) && (in_the_air || all_landed()));
+}
+
 }  // namespace skein::hil

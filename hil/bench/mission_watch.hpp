@@ -29,6 +29,8 @@ class MissionWatch {
   [[nodiscard]] bool work_done(Instant now) const;
   /// Nobody whose program runs is in the air any more.
   [[nodiscard]] bool all_landed() const;
+  /// The work, and the landing where the scenario ends on the ground; or nobody flies any more.
+  [[nodiscard]] bool over(Instant now) const;
 
  private:
   const configuration::Scenario& scenario_;

@@ -50,6 +50,18 @@ TEST(MissionWatch, WorkIsDoneWithTheLastSiteEachCountedOnce) {
   EXPECT_TRUE(watch.work_done(Instant{}));
 }
 
+TEST(MissionWatch, IsOverWhenTheRangesOfAllHaveEnded) {
+  using mission::Activity;
+  const auto scenario = two_vehicles_one_site();
+  MissionWatch watch{scenario};
+  watch.on_telemetry(telemetry({1}, Activity::landed, FlightPhase::disarmed));
+  watch.on_killed({2});  // it starts anew, and goes on
+  EXPECT_FALSE(watch.over(Instant{}));
+  watch.on_telemetry(telemetry({2}, Activity::landed, FlightPhase::disarmed));
+  EXPECT_TRUE(watch.over(Instant{}));
+  EXPECT_FALSE(watch.work_done(Instant{}));
+}
+
 TEST(MissionWatch, AllHaveLandedWhenWhoIsNotKilledRestsOnTheGround) {
   using mission::Activity;
   const auto scenario = two_vehicles_one_site();

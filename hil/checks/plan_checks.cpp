@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
 #include "motion.hpp"
 #include "skein/checks/checks.hpp"
@@ -191,6 +192,64 @@ CheckResult check_continuity(const RunRecord& record, const Limits& limits) {
   return result;
 }
 
+namespace {
+
+double length_m(std::span<const recording::TrackPoint> track) {
+  double sum_m = 0.0;
+  for (std::size_t i = 1; i < track.size(); ++i) {
+    const VehicleState& a = track[i - 1].state;
+    const VehicleState& b = track[i].state;
+    sum_m += std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
+  }
+  return sum_m;
+}
+
+/// By its range; what it lands with is a glide, which takes none.
+void judge_flown_range(const Recording& recorded, const VehicleSpec& vehicle, const Limits& limits,
+                       double flown_m, CheckResult& result) {
+  const auto add = [&](Instant when, const std::string& what) {
+    result.violations.push_back({recorded.vehicle, when, vehicle_name(recorded.vehicle) + what});
+  };
+  const auto planned = planned_part(recorded.track);
+  const Instant end = planned.back().state.time;
+  if (flown_m > vehicle.range_m) {
+    add(end, " flew " + fixed(flown_m, 0) + " m (range " + fixed(vehicle.range_m, 0) + " m)");
+  }
+  const double landed_m = length_m(std::span{recorded.track}.subspan(planned.size() - 1));
+  const double lap_m = kTwoPi * vehicle.planning_radius_m();
+  const double glide_m =
+      limits.glide_ratio * planned.back().state.z_m + 2.0 * (vehicle.landing.approach_m + lap_m);
+  if (landed_m > glide_m) {
+    add(recorded.track.back().state.time, " flew " + fixed(landed_m, 0) +
+                                              " m to land (a glide there takes " +
+                                              fixed(glide_m, 0) + " m at most)");
+  }
+  const auto empty = std::ranges::find_if(
+      recorded.track, [](const auto& point) { return point.state.battery_percent == 0; });
+  if (empty != recorded.track.end()) add(empty->state.time, " flies on a battery that is empty");
+}
+
+void judge_planned_range(const Recording& recorded, const VehicleSpec& vehicle,
+                         const Limits& limits, CheckResult& result) {
+  const Instant landed_from = planned_part(recorded.track).back().state.time;
+  for (const PlanRecord& plan : recorded.plans) {
+    const auto there = track_at(recorded.track, plan.since, limits.track_gap_s);
+    if (!there || plan.since > landed_from) continue;
+    ++result.judged;
+    const double ahead =
+        std::max(0.0, plan_length_m(plan.plan) - plan_distance_m(plan.plan, plan.since));
+    const double total = there->distance_flown_m + ahead;
+    if (total <= vehicle.range_m) continue;
+    result.violations.push_back({recorded.vehicle, plan.since,
+                                 plan_name(recorded, plan) + ", followed from " +
+                                     fixed(to_seconds(plan.since), 2) +
+                                     " s, brings the distance flown to " + fixed(total, 0) +
+                                     " m (range " + fixed(vehicle.range_m, 0) + " m)"});
+  }
+}
+
+}  // namespace
+
 CheckResult check_range(const RunRecord& record, const Limits& limits) {
   CheckResult result{
       "range", "no vehicle flies, or plans to fly, further than its range, or on an empty battery",
@@ -200,42 +259,14 @@ CheckResult check_range(const RunRecord& record, const Limits& limits) {
   for (const Recording& recorded : record.recordings) {
     const VehicleSpec* vehicle = spec_of(record, recorded.vehicle);
     if (vehicle == nullptr || recorded.track.empty()) continue;
-    double flown = recorded.track.front().state.distance_flown_m;
-    for (std::size_t i = 1; i < recorded.track.size(); ++i) {
-      const VehicleState& a = recorded.track[i - 1].state;
-      const VehicleState& b = recorded.track[i].state;
-      flown += std::hypot(b.x_m - a.x_m, b.y_m - a.y_m);
-    }
-    flown = std::max(flown, recorded.track.back().state.distance_flown_m);
+    const auto planned = planned_part(recorded.track);
+    const VehicleState& last = planned.back().state;
+    const double flown_m =
+        std::max(planned.front().state.distance_flown_m + length_m(planned), last.distance_flown_m);
     ++result.judged;
-    fullest.raise(flown / vehicle->range_m, recorded.track.back().state.time);
-    if (flown > vehicle->range_m) {
-      result.violations.push_back({recorded.vehicle, recorded.track.back().state.time,
-                                   vehicle_name(recorded.vehicle) + " flew " + fixed(flown, 0) +
-                                       " m (range " + fixed(vehicle->range_m, 0) + " m)"});
-    }
-    const auto empty = std::ranges::find_if(
-        recorded.track, [](const auto& point) { return point.state.battery_percent == 0; });
-    if (empty != recorded.track.end()) {
-      result.violations.push_back(
-          {recorded.vehicle, empty->state.time,
-           vehicle_name(recorded.vehicle) + " flies on a battery that is empty"});
-    }
-    for (const PlanRecord& plan : recorded.plans) {
-      const auto there = track_at(recorded.track, plan.since, limits.track_gap_s);
-      if (!there) continue;
-      ++result.judged;
-      const double ahead =
-          std::max(0.0, plan_length_m(plan.plan) - plan_distance_m(plan.plan, plan.since));
-      const double total = there->distance_flown_m + ahead;
-      if (total > vehicle->range_m) {
-        result.violations.push_back({recorded.vehicle, plan.since,
-                                     plan_name(recorded, plan) + ", followed from " +
-                                         fixed(to_seconds(plan.since), 2) +
-                                         " s, brings the distance flown to " + fixed(total, 0) +
-                                         " m (range " + fixed(vehicle->range_m, 0) + " m)"});
-      }
-    }
+    fullest.raise(flown_m / vehicle->range_m, last.time);
+    judge_flown_range(recorded, *vehicle, limits, flown_m, result);
+    judge_planned_range(recorded, *vehicle, limits, result);
   }
   result.measured = "most used " + fixed(100.0 * fullest.value, 1) + " % of the range";
   result.moment = fullest.at;

@@ -192,6 +192,30 @@ TEST(PlanChecks, WhatAPlanHasAheadComesToWhatWasFlown) {
               HasSubstr("brings the distance flown to 6300 m"));
 }
 
+/// The last 3000 m of the assessor, coming down from so high.
+RunRecord landed_from(double height_m) {
+  RunRecord record = good_record();
+  for (auto& point : of(record, kAssessor).track) {
+    if (point.state.distance_flown_m <= 2000.0) continue;
+    point.state.phase = FlightPhase::landing;
+  }
+  for (auto& point : of(record, kAssessor).track) point.state.z_m = height_m;
+  of(record, kAssessor).track.back().state.phase = FlightPhase::disarmed;
+  spec(record, kAssessor).range_m = 4600.0;  // the plan's 4550 m
+  spec(record, kAssessor).landing.approach_m = 100.0;
+  return record;
+}
+
+TEST(PlanChecks, WhatIsFlownToLandIsAGlideAndTakesNoRange) {
+  RunRecord record = landed_from(1.0);
+  const double laps_m = 2.0 * kTwoPi * spec(record, kAssessor).planning_radius_m();
+  const double enough_m = (3000.0 - 200.0 - laps_m) / 10.0;
+  ASSERT_GT(enough_m, 2.0);
+  EXPECT_THAT(check_range(landed_from(enough_m + 1.0), {}).violations, IsEmpty());
+  EXPECT_THAT(only_sentence(check_range(landed_from(enough_m - 2.0), {})),
+              HasSubstr("flew 3000 m to land (a glide there takes"));
+}
+
 TEST(PlanChecks, WhoFliesOnAnEmptyBatteryIsFound) {
   RunRecord record = good_record();
   auto& track = of(record, kAssessor).track;

@@ -111,7 +111,9 @@ class AlarmWatch {
   void judge(Instant now) {
     for (const auto& [id, own] : truth_.run) {
       must_be({AlarmKind::vehicle_silent, id, {}}, false, kLate + kSteady, now);
-      must_be({AlarmKind::range_reserve, id, {}}, truth_.spent.contains(id), kWordLate, now);
+      const bool lacks_range =
+          truth_.spent.contains(id) && own.activity != mission::Activity::landed;
+      must_be({AlarmKind::range_reserve, id, {}}, lacks_range, kWordLate + kSteady, now);
     }
     for (const auto& [id, at] : truth_.ended) {
       must_be({AlarmKind::vehicle_silent, id, {}}, now >= at + kSilence, kLate, now);
@@ -134,7 +136,7 @@ class AlarmWatch {
     bool any = false;
     for (const auto& [id, own] : truth_.run) {
       const ShownState state = mission::shown_state(own.activity, own.detail);
-      if (state == ShownState::waiting_for_the_start) continue;
+      if (state == ShownState::waiting_for_the_start || state == ShownState::landed) continue;
       if (state != ShownState::holding_by_order) return false;
       any = true;
     }

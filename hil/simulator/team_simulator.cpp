@@ -126,9 +126,7 @@ class Team {
       if (observer_.moment && due(now, kNodePeriod)) show_moment(now);
       if (mission_.formation) watch_formation(now);
       result_.ended_at = now;
-      if (!stop_at && sites_over_.size() == mission_.sites.size() && formation_over(now) &&
-          (!awaits_routes_ || std::ranges::any_of(grounds_, &GroundStation::routes_over)) &&
-          landed_if_so(now)) {
+      if (!stop_at && (work_over(now) ? landed_if_so(now) : nobody_flies())) {
         const Duration afterwards = mission_.sites.empty() ? Duration{} : kAfterwards;
         stop_at = std::min(last, std::max(now, healing_.value_or(Instant{})) + afterwards);
       }
@@ -140,6 +138,22 @@ class Team {
   }
 
  private:
+  [[nodiscard]] bool work_over(Instant now) const {
+    return sites_over_.size() == mission_.sites.size() && formation_over(now) &&
+           (!awaits_routes_ || std::ranges::any_of(grounds_, &GroundStation::routes_over));
+  }
+
+  /// The range of all that are left has ended, and nobody joins any more.
+  [[nodiscard]] bool nobody_flies() const {
+    if (mission_.formation) return false;
+    for (std::size_t i = 0; i < vehicles_.size(); ++i) {
+      const Aircraft& v = vehicles_[i];
+      const bool landed = v.running() && v.activity() == mission::Activity::landed;
+      if (!v.flying() || !(landed || gone_at_[i])) return false;
+    }
+    return true;
+  }
+
   /// Where the mission ends on the ground, the operator orders it once the work is done.
   bool landed_if_so(Instant now) {
     if (!mission_.ends_landed) return true;

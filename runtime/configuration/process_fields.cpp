@@ -192,7 +192,8 @@ void spec_fields(FieldVisitor& v, VehicleSpec& spec) {
   auto recovery = static_cast<std::size_t>(spec.recovery);
   v.choice({"recovery",
             "where the flight ends: `home`, its start, for which it keeps enough of its range, or "
-            "`anywhere`, where its range ends"},
+            "`anywhere`, where its range ends; there it lands without an order, a plane on an "
+            "ArduPilot only at home and where all of `landing`'s place and heading are given"},
            kRecoveries, recovery);
   spec.recovery = static_cast<Recovery>(recovery);
   task_kinds(v, {"capabilities", "tasks that the vehicle can do", kRequired}, spec.capabilities);

@@ -128,7 +128,8 @@ std::string_view sentence_of(event::Trouble trouble) {
       "a hazard or the fence bars its way down: it orbits at home, and is to be landed otherwise",
       "its circles would have to be wider in this wind than there is room for: it flies off their "
       "line; give it a greater sensor_radius_m and assess_radius_m, or wait for less wind",
-      "it has left its fence, or would soon: it flies home; 'resume' when it may go on"};
+      "it has left its fence, or would soon: it flies home; 'resume' when it may go on",
+      "its range ends, and nobody has landed it: it lands by itself"};
   return sentence_in(kSentences, trouble);
 }
 

@@ -103,29 +103,43 @@ export default [
     promise: 'who comes home has the range for it',
     file: ownship,
     from: `  const Pose2 there{site.position.x(), site.position.y(), 0.0};
-  const double turn_m = kTwoPi * planning_radius_m();
   return range_to_spend(at) - flight_.way_home_m(there, hazards()) - spec().assess_radius_m -
-         turn_m;`,
+         lap_m();`,
     to: `  const Pose2 there{site.position.x(), site.position.y(), 0.0};
-  const double turn_m = kTwoPi * planning_radius_m();
   return range_to_spend(at) - 0.0 * flight_.way_home_m(there, hazards()) - spec().assess_radius_m -
-         turn_m;`,
+         lap_m();`,
   },
   {
     name: 'turns-for-home-late',
     slip: 'the range is looked at half as often as it can matter',
     promise: 'who comes home has the range for it',
     file: ownship,
-    from: 'return spare_m / (2.0 * spec().cruise_speed_mps);',
-    to: 'return spare_m / (0.5 * spec().cruise_speed_mps);',
+    from: 'return (spare_m - lap_m()) / (2.0 * spec().cruise_speed_mps);',
+    to: 'return (spare_m - lap_m()) / (0.5 * spec().cruise_speed_mps);',
   },
   {
     name: 'range-of-the-turn-added',
     slip: 'the turn that the way home may need is added to the range, not taken off',
     promise: 'who comes home has the range for it',
     file: ownship,
-    from: 'return range_left(at) - kTwoPi * planning_radius_m();',
-    to: 'return range_left(at) + kTwoPi * planning_radius_m();',
+    from: 'return range_left(at) - lap_m();',
+    to: 'return range_left(at) + lap_m();',
+  },
+  {
+    name: 'comes-down-beyond-its-range',
+    slip: 'who waits for the air below waits on when its range is used up',
+    promise: 'nobody flies further than its range',
+    file: 'core/mission/vehicle_agent_failsafe.cpp',
+    from: 'now < *may_land_at_ + kWaitsToLand && laps_left > kLapsLeast;',
+    to: 'now < *may_land_at_ + kWaitsToLand && laps_left > -kLapsLeast;',
+  },
+  {
+    name: 'lands-whom-the-operator-holds',
+    slip: 'whose range has ended lands where it was told to hold',
+    promise: 'what the operator orders is obeyed',
+    file: 'core/mission/vehicle_agent_failsafe.cpp',
+    from: 'const bool stays = failsafe_.in(Failsafe::Action::obey) && !lands_;',
+    to: 'const bool stays = failsafe_.in(Failsafe::Action::obey) && lands_;',
   },
   {
     name: 'reserve-of-the-battery-spent',

@@ -89,9 +89,10 @@ class SeparationWatch {
 
   /// It is about to come down, and looks at who is below, until it is told that it is not.
   void look_below(bool looks) { looks_below_ = looks; }
+  enum class Turns : std::uint8_t { whatever, as_now };
   /// Came it down now, nobody through whose height it then passes within seconds can be near,
-  /// however both turn. Of those that it has heard of since it looks below.
-  [[nodiscard]] bool is_free_below(const VehicleState& own, Instant now) const;
+  /// however both turn, or as both turn now. Of those that it has heard of since it looks below.
+  [[nodiscard]] bool is_free_below(const VehicleState& own, Turns turns, Instant now) const;
 
   /// It knows of others: step() is to be called with every state.
   [[nodiscard]] bool watches() const {
@@ -111,6 +112,7 @@ class SeparationWatch {
     Instant heard{};
     Duration delay{};            ///< of its state, when it was heard
     double climb_mps = 0.0;      ///< from one state to the next
+    double turn_radps = 0.0;     ///< over the last states
     bool gives_way_too = false;  ///< to the same aircraft, perhaps
     bool piloted = false;
     bool conflict = false;
@@ -133,6 +135,9 @@ class SeparationWatch {
     double height_margin_m = 0.0;
   };
   [[nodiscard]] Approach approach(const Self& self, const Other& other, Instant now) const;
+  [[nodiscard]] double closest_s(const Self& self, const Other& other, const Vec2& apart) const;
+  template <class Apart, class Above>
+  [[nodiscard]] double nearest_s(const Apart& apart_at, const Above& above_at) const;
   [[nodiscard]] bool breaks(const Approach& a) const;
   [[nodiscard]] bool still_breaks(const Approach& a, const Self& self, const Other& other) const;
   [[nodiscard]] bool passes_near(const Approach& a) const;
@@ -154,7 +159,8 @@ class SeparationWatch {
   [[nodiscard]] bool has_taken_off(const VehicleState& own) const;
   [[nodiscard]] bool on_the_way(const VehicleState& own, const VehicleState& other) const;
   [[nodiscard]] bool any_conflict() const;
-  [[nodiscard]] bool can_be_below(const VehicleState& own, const Other& other, Instant now) const;
+  [[nodiscard]] bool can_be_below(const VehicleState& own, const Other& other, Turns turns,
+                                  Instant now) const;
 
   coalition::ProtocolParams params_;
   VehicleId self_;
@@ -166,7 +172,9 @@ class SeparationWatch {
   double base_m_;                 ///< the same, with room for those that follow
   double way_m_;                  ///< as far as nobody is in the way there
   bool looks_below_ = false;
-  bool off_layer_ = false;  ///< by Self::height_m, or not back from there yet
+  std::optional<VehicleState> last_;  ///< its own
+  double turn_radps_ = 0.0;           ///< over the last of them
+  bool off_layer_ = false;            ///< by Self::height_m, or not back from there yet
   HeightBand room_;
   Instant next_way_ = Instant::min();
   Instant chosen_at_ = Instant::min();

@@ -35,6 +35,9 @@ struct VehicleAgentConfig {
   /// The follower begins turns so much before the path does: a delivery's run goes straight on for
   /// longer than that.
   double turn_lead_s = 0.0;
+  /// Where its range ends, at home or where it is recovered anywhere, it lands without an order.
+  /// Else it orbits there for its pilot.
+  bool lands_by_itself = true;
 };
 
 /// All decisions of one vehicle of a coalition: search, survey, lead, bid, execute, hold.

@@ -44,7 +44,9 @@ struct CheckResult {
 [[nodiscard]] CheckResult check_turn_radius(const RunRecord& record, const Limits& limits);
 /// A plan starts where the one that it replaces is at that time; the first where the vehicle is.
 [[nodiscard]] CheckResult check_continuity(const RunRecord& record, const Limits& limits);
-/// No vehicle flew, or planned to fly, further than its range, or flew on an empty battery.
+/// No vehicle flew, or planned to fly, further than its range, or flew on an empty battery. What it
+/// lands with, its last flight, is a glide: as long as its height lets it be, twice its approach,
+/// and two laps.
 [[nodiscard]] CheckResult check_range(const RunRecord& record, const Limits& limits);
 /// No plan and no track enters a hazard from Limits::hazard_reaction_s after it is known on.
 /// Excused is who was inside at that moment, or so near that the tightest turn to either side, in

@@ -111,6 +111,7 @@ struct Limits {
   double place_rms_m = 0.3;       ///< from its place, of any vehicle while a formation holds
   double arrival_spread_s = 0.3;  ///< from the first vehicle in its place to the last
   Capabilities copters_fly;       ///< kinds of tasks of which copters have flown one at least
+  double glide_ratio = 10.0;      ///< flown per metre of height by who lands, at most
   double track_gap_s = 1.0;       ///< a longer gap in a track cannot be judged
   /// From the start of a program, or from when it goes on, until it has its vehicle where it wants
   /// it: it waits for the link to the autopilot, plans, and flies back from where that had it.

@@ -182,7 +182,8 @@ struct TeamResult {
 /// one thread and in virtual time. It ends at duration_max, or before it when all is done: the
 /// sites, by work or by the operator's refusal (and 5 s more, and not before the radio has healed);
 /// with ends_landed all that fly have landed then, too; the formation's script (and 2 s of rest
-/// more; 30 s where it is not done, and nothing moves any more). Precondition: check_script().
+/// more; 30 s where it is not done, and nothing moves any more); or when all that are left have
+/// landed at the end of their range. Precondition: check_script().
 /// Nothing in it reads a clock or an unseeded generator: the same mission gives the same calls,
 /// byte for byte.
 TeamResult simulate_team(const TeamMission& mission, const TeamObserver& observer);
