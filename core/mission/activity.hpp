@@ -12,7 +12,7 @@ namespace skein::mission {
 struct PartStates {
   Failsafe::Action failsafe = Failsafe::Action::none;
   bool piloted = false;  ///< others fly it
-  bool lands = false;    ///< comes down by order, or has
+  bool lands = false;    ///< comes down, or has
   bool landed = false;   ///< and is on the ground
   bool has_task = false;
   bool leads = false;

@@ -136,7 +136,7 @@ class Ownship {
   [[nodiscard]] double range_left(Instant at) const;
   /// Of an orbit.
   [[nodiscard]] double lap_m() const { return kTwoPi * planning_radius_m(); }
-  /// Without the lap that is kept for whoever lands it.
+  /// Without the lap that is kept until it lands.
   [[nodiscard]] double range_to_spend(Instant at) const;
   /// What a task at that site may use up, so that it can come home from any end of it.
   [[nodiscard]] double range_for(const Site& site, Instant at) const;

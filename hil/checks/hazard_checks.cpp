@@ -18,8 +18,9 @@ using recording::Recording;
 
 // Arcs are walked in steps that leave at most a millimetre between chord and arc.
 constexpr double kWalkStep = 0.5;
-// A plan that touches a hazard's edge has not entered it.
-constexpr double kEdge = 0.01;
+// A plan that touches a hazard's edge has not entered it; it begins where the vehicle was to be,
+// some centimetres beside where it was.
+constexpr double kEdge = 0.05;
 
 /// From when on a vehicle is held to a hazard. Before that it may not have heard of it.
 struct Held {

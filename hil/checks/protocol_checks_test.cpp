@@ -70,6 +70,18 @@ TEST(ProtocolChecks, AnAssessmentBeforeItsWaitIsFound) {
   EXPECT_THAT(check_precedence(record, {}).violations.front().sentence, HasSubstr("wait 10.0 s"));
 }
 
+TEST(ProtocolChecks, WhatMayHaveBeenFlownIsFollowedByItsAssessment) {
+  RunRecord record = good_record();
+  event_of(record, kFromWest, EventKind::task_started).time = at_seconds(90.0);
+  event_of(record, kFromWest, EventKind::task_done).time = at_seconds(95.0);
+  EXPECT_FALSE(check_precedence(record, {}).held());
+  auto& told = of(record, kSurveyor).events;
+  told.push_back(event(kSurveyor, 69.0, EventKind::task_unknown, kEastward));
+  EXPECT_TRUE(check_precedence(record, {}).held());
+  told.back().time = at_seconds(71.0);
+  EXPECT_FALSE(check_precedence(record, {}).held()) << "the assessment had begun";
+}
+
 TEST(ProtocolChecks, AnAssessmentPlannedBeforeItsWaitIsFound) {
   RunRecord record = good_record();
   set_moment(event_of(record, kAssessor, EventKind::task_done), 69.9);

@@ -138,7 +138,7 @@ std::optional<double> Aircraft::hold_curvature(const std::vector<Hazard>& hazard
   const double radius = what_.spec.planning_radius_m();
   const double clearance_m =
       kOrbitClearance_m + kOrbitClearance_s * mission_.wind.steady_mps.norm();
-  const Pose2 here = state_.pose();
+  const Pose2 here = state_.pose_over_ground();
   for (const double side : {1.0, -1.0}) {
     const Vec2 centre = here.position() + side * radius * left_of(unit_vector(here.heading_rad));
     const bool clear = std::all_of(hazards.begin(), hazards.end(), [&](const Hazard& h) {
@@ -186,7 +186,7 @@ void Aircraft::hold_orbit(Instant now, const std::vector<Hazard>& hazards) {
   orbit.height_from_m = orbit.height_to_m = mission::height_offset_m(recorded_, now);
   orbit.timed.start_time = local(now);
   orbit.timed.speed_mps = what_.spec.cruise_speed_mps;
-  orbit.timed.path.start = state_.pose();
+  orbit.timed.path.start = state_.pose_over_ground();
   orbit.timed.tail_curvature_per_m =
       hold_curvature(hazards).value_or(1.0 / what_.spec.planning_radius_m());
   guidance_.emplace(orbit);

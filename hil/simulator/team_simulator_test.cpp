@@ -162,7 +162,7 @@ TEST(TeamSimulator, WhoseBatteryFallsGivesItsTaskBackAndIsHomeBeforeItsReserve) 
   }
   EXPECT_EQ(which.size(), 3U);
   EXPECT_EQ(flown.done(TaskKind::assess).size(), 2U);
-  // It has come home with its reserve, and orbits there for whoever lands it.
+  // It has come home with its reserve, and lands there.
   ASSERT_TRUE(percent_at_home);
   EXPECT_GE(*percent_at_home, 20);
   for (const auto& end : flown.result.vehicles) {

@@ -59,6 +59,8 @@ struct CheckResult {
 [[nodiscard]] std::optional<CheckResult> check_fence(const RunRecord& record);
 
 /// Survey before deliveries before assessments, with the site's wait between the last two (eq. 14).
+/// Not judged is an assessment that began when the operator had been told that the delivery may
+/// have been flown, against one who flies it again afterwards.
 [[nodiscard]] CheckResult check_precedence(const RunRecord& record, const Limits& limits);
 /// Tasks are leased and flown only by vehicles that can do their kind.
 [[nodiscard]] CheckResult check_capabilities(const RunRecord& record, const Limits& limits);
