@@ -220,6 +220,18 @@ TEST(LandingByItself, WhoIsLeftToItsPilotOrbits) {
   EXPECT_TRUE(vehicle.plan.lands);
 }
 
+/// Where it is then it takes for its home.
+TEST(LandingByItself, WhoHasStartedAnewWaitsForAnOrder) {
+  Lander vehicle{short_of_range(Recovery::home)};
+  vehicle.agent.on_bar(Bar::orders_unknown, at_seconds(0.0));
+  vehicle.agent.on_bar(Bar::none, at_seconds(0.5));
+  fly_to_its_end(vehicle);
+  EXPECT_FALSE(vehicle.plan.lands);
+  vehicle.order(CommandKind::land);
+  vehicle.fly(5.0);
+  EXPECT_TRUE(vehicle.plan.lands);
+}
+
 TEST(LandingByItself, WaitsForTheAirBelowAsLongAsItsRangeLasts) {
   Lander vehicle{short_of_range(Recovery::home)};
   while (!vehicle.plan.lands && vehicle.state.distance_flown_m < 3000.0) {

@@ -50,7 +50,8 @@ bool VehicleAgent::Impl::flight_ends(Instant now) const {
 /// below one that lands gives way.
 void VehicleAgent::Impl::come_down(Instant now) {
   const Failsafe::Facts& facts = failsafe_.facts();
-  const bool by_itself = facts.range_spent && !facts.piloted && ownship_.config().lands_by_itself;
+  const bool by_itself =
+      facts.range_spent && !facts.piloted && !started_anew_ && ownship_.config().lands_by_itself;
   const bool waits = !ownship_.landing() && (lands_ || by_itself);
   separation_.look_below(waits);
   if (!waits) {
@@ -59,7 +60,10 @@ void VehicleAgent::Impl::come_down(Instant now) {
     return;
   }
   if (!hears_below_at_) hears_below_at_ = now + kHearsOthers;
-  if (!flight_ends(now)) return;
+  if (!flight_ends(now)) {
+    may_land_at_.reset();
+    return;
+  }
   if (!may_land_at_) may_land_at_ = std::max(now, *hears_below_at_);
   if (now < *may_land_at_) return;
   const double laps_left = ownship_.range_left(now) / ownship_.lap_m();
@@ -71,6 +75,7 @@ void VehicleAgent::Impl::come_down(Instant now) {
   if (can_wait && !is_free) return;
   std::optional<event::Trouble> trouble;
   if (!ownship_.land(now)) {
+    may_land_at_.reset();
     if (!std::exchange(told_barred_, true)) trouble = event::Trouble::landing_barred;
   } else if (!lands_) {
     trouble = event::Trouble::lands_by_itself;
@@ -86,6 +91,7 @@ void VehicleAgent::Impl::on_return_flight(const ReturnFlight& message, Instant n
 }
 
 void VehicleAgent::Impl::on_bar(Bar bar, Instant now) {
+  started_anew_ = started_anew_ || bar == Bar::orders_unknown;
   const auto* response = failsafe_.update(now, {.bar = bar});
   if (response != nullptr && ownship_.flight().started()) respond(*response, now);
 }

@@ -217,8 +217,10 @@ void judge_flown_range(const Recording& recorded, const VehicleSpec& vehicle, co
   }
   const double landed_m = length_m(std::span{recorded.track}.subspan(planned.size() - 1));
   const double lap_m = kTwoPi * vehicle.planning_radius_m();
-  const double glide_m =
-      limits.glide_ratio * planned.back().state.z_m + 2.0 * (vehicle.landing.approach_m + lap_m);
+  // A copter comes over its place, and straight down.
+  const double glide_m = vehicle.is_copter() ? 2.0 * lap_m
+                                             : limits.glide_ratio * planned.back().state.z_m +
+                                                   2.0 * (vehicle.landing.approach_m + lap_m);
   if (landed_m > glide_m) {
     add(recorded.track.back().state.time, " flew " + fixed(landed_m, 0) +
                                               " m to land (a glide there takes " +

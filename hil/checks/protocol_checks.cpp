@@ -91,10 +91,13 @@ bool refused(const RunRecord& record, SiteId site) {
   });
 }
 
-/// The operator was told by then that the delivery may have been flown: what follows it goes on,
-/// whether somebody flies it again later or not.
-bool counts_as_flown(const RunRecord& record, const TaskRun& delivery, Instant by) {
-  if (delivery.begin() <= by) return false;
+/// The operator was told before the assessment that the delivery may have been flown: what follows
+/// it goes on, whether it is flown later, in another coalition, or not.
+bool counts_as_flown(const RunRecord& record, const TaskRun& delivery, const TaskRun& assessment) {
+  const Instant by = assessment.begin();
+  if (delivery.begin() <= by || delivery.round.coalition == assessment.round.coalition) {
+    return false;
+  }
   return std::ranges::any_of(record.recordings, [&](const recording::Recording& recorded) {
     return std::ranges::any_of(recorded.events, [&](const MissionEvent& event) {
       return event.kind() == EventKind::task_unknown && event.task == delivery.task &&
@@ -132,7 +135,7 @@ CheckResult check_precedence(const RunRecord& record, const Limits& limits) {
     }
     for (const TaskRun* delivery : deliveries) {
       for (const TaskRun* assessment : assessments) {
-        if (counts_as_flown(record, *delivery, assessment->begin())) continue;
+        if (counts_as_flown(record, *delivery, *assessment)) continue;
         judge_order({*delivery, *assessment, site.assess_wait}, limits, result);
       }
     }

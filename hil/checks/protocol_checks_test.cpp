@@ -77,6 +77,10 @@ TEST(ProtocolChecks, WhatMayHaveBeenFlownIsFollowedByItsAssessment) {
   EXPECT_FALSE(check_precedence(record, {}).held());
   auto& told = of(record, kSurveyor).events;
   told.push_back(event(kSurveyor, 69.0, EventKind::task_unknown, kEastward));
+  EXPECT_FALSE(check_precedence(record, {}).held()) << "by the same coalition";
+  for (const auto kind : {EventKind::task_started, EventKind::task_done}) {
+    event_of(record, kFromWest, kind).round.coalition.number += 1;
+  }
   EXPECT_TRUE(check_precedence(record, {}).held());
   told.back().time = at_seconds(71.0);
   EXPECT_FALSE(check_precedence(record, {}).held()) << "the assessment had begun";
