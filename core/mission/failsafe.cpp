@@ -69,6 +69,7 @@ const Failsafe::Response* Failsafe::on_bar(Bar bar) {
   const bool was_barred = facts_.setup_differs || facts_.orders_unknown;
   facts_.setup_differs = bar == Bar::setup_differs;
   facts_.orders_unknown = bar == Bar::orders_unknown;
+  facts_.started_anew = facts_.started_anew || facts_.orders_unknown;
   if (facts_.ordered) return nullptr;
   if (bar != Bar::none) return barred();
   return was_barred && !facts_.piloted ? &kMayWork : nullptr;

@@ -34,6 +34,7 @@ class Failsafe {
     bool left_fence = false;      ///< or would have, since the operator last told it to go on
     bool range_spent = false;     ///< what is left of its range is for the way home
     bool ordered = false;         ///< by the operator to hold, to come home or to land
+    bool started_anew = false;    ///< its program, in the mission: it may take any place for home
   };
   struct Rule {
     std::string_view fact;

@@ -50,8 +50,8 @@ bool VehicleAgent::Impl::flight_ends(Instant now) const {
 /// below one that lands gives way.
 void VehicleAgent::Impl::come_down(Instant now) {
   const Failsafe::Facts& facts = failsafe_.facts();
-  const bool by_itself =
-      facts.range_spent && !facts.piloted && !started_anew_ && ownship_.config().lands_by_itself;
+  const bool by_itself = facts.range_spent && !facts.piloted && !facts.started_anew &&
+                         ownship_.config().lands_by_itself;
   const bool waits = !ownship_.landing() && (lands_ || by_itself);
   separation_.look_below(waits);
   if (!waits) {
@@ -91,7 +91,6 @@ void VehicleAgent::Impl::on_return_flight(const ReturnFlight& message, Instant n
 }
 
 void VehicleAgent::Impl::on_bar(Bar bar, Instant now) {
-  started_anew_ = started_anew_ || bar == Bar::orders_unknown;
   const auto* response = failsafe_.update(now, {.bar = bar});
   if (response != nullptr && ownship_.flight().started()) respond(*response, now);
 }

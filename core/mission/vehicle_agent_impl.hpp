@@ -93,12 +93,11 @@ class VehicleAgent::Impl {
   SeparationWatch separation_;
   TrafficWatch traffic_;
   CommandFilter commands_;
-  std::optional<Instant> hears_below_at_;  ///< those that it is to come down through
-  std::optional<Instant> may_land_at_;     ///< where the air below is free
-  std::uint32_t return_plan_ = 0;          ///< the newest that it flies
-  bool lands_ = false;                     ///< by order, once it is at home
-  bool started_anew_ = false;              ///< in the mission: where it is home, it does not know
-  bool told_barred_ = false;               ///< that a hazard keeps it from that
+  std::optional<Instant> hears_below_at_;      ///< those that it is to come down through
+  std::optional<Instant> may_land_at_;         ///< where the air below is free
+  std::uint32_t return_plan_ = 0;              ///< the newest that it flies
+  bool lands_ = false;                         ///< by order, once it is at home
+  bool told_barred_ = false;                   ///< that a hazard keeps it from that
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };
 
