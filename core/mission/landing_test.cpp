@@ -209,10 +209,7 @@ TEST(LandingByItself, TheOperatorsWordStands) {
   EXPECT_TRUE(stays.plan.lands) << "where it is: it has no range for its way home";
 }
 
-TEST(LandingByItself, WhoIsLeftToItsPilotOrbits) {
-  VehicleAgentConfig config = short_of_range(Recovery::home);
-  config.lands_by_itself = false;
-  Lander vehicle{config};
+void lands_by_order_alone(Lander& vehicle) {
   fly_to_its_end(vehicle);
   EXPECT_FALSE(vehicle.plan.lands);
   vehicle.order(CommandKind::land);
@@ -220,16 +217,19 @@ TEST(LandingByItself, WhoIsLeftToItsPilotOrbits) {
   EXPECT_TRUE(vehicle.plan.lands);
 }
 
+TEST(LandingByItself, WhoIsLeftToItsPilotOrbits) {
+  VehicleAgentConfig config = short_of_range(Recovery::home);
+  config.lands_by_itself = false;
+  Lander vehicle{config};
+  lands_by_order_alone(vehicle);
+}
+
 /// Where it is then it takes for its home.
 TEST(LandingByItself, WhoHasStartedAnewWaitsForAnOrder) {
   Lander vehicle{short_of_range(Recovery::home)};
   vehicle.agent.on_bar(Bar::orders_unknown, at_seconds(0.0));
   vehicle.agent.on_bar(Bar::none, at_seconds(0.5));
-  fly_to_its_end(vehicle);
-  EXPECT_FALSE(vehicle.plan.lands);
-  vehicle.order(CommandKind::land);
-  vehicle.fly(5.0);
-  EXPECT_TRUE(vehicle.plan.lands);
+  lands_by_order_alone(vehicle);
 }
 
 TEST(LandingByItself, WaitsForTheAirBelowAsLongAsItsRangeLasts) {

@@ -95,6 +95,8 @@ class Aircraft {
   }
   /// Precondition: running().
   [[nodiscard]] mission::Activity activity() const { return node_->agent().telemetry().activity; }
+  /// Its program runs, and has brought it down.
+  [[nodiscard]] bool landed() const { return running() && activity() == mission::Activity::landed; }
   /// Precondition: running().
   [[nodiscard]] mission::Telemetry telemetry() const { return node_->agent().telemetry(); }
   /// It has come to where its newest change of formation ends, or there is none.

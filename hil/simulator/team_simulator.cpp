@@ -148,8 +148,7 @@ class Team {
     if (mission_.formation) return false;
     for (std::size_t i = 0; i < vehicles_.size(); ++i) {
       const Aircraft& v = vehicles_[i];
-      const bool landed = v.running() && v.activity() == mission::Activity::landed;
-      if (!v.flying() || !(landed || gone_at_[i])) return false;
+      if (!v.flying() || !(v.landed() || gone_at_[i])) return false;
     }
     return true;
   }
@@ -163,9 +162,8 @@ class Team {
         commander().command(kGroundStation, kOrders.at(orders_to_land_), now)) {
       ++orders_to_land_;
     }
-    return std::ranges::none_of(vehicles_, [](const Aircraft& v) {
-      return v.running() && v.activity() != mission::Activity::landed;
-    });
+    return std::ranges::none_of(vehicles_,
+                                [](const Aircraft& v) { return v.running() && !v.landed(); });
   }
 
   // --- faults ---
@@ -669,7 +667,7 @@ class Team {
     end.barred = v.in_coalitions() && !v.takes_part();
     end.loads = v.loads_left();
     end.in_place = v.in_place();
-    end.landed = v.running() && v.activity() == mission::Activity::landed;
+    end.landed = v.landed();
     if (v.flying()) {
       end.range_left_m = v.spec().range_m - v.state().distance_flown_m;
       end.position = v.state().position().horizontal();
