@@ -16,6 +16,9 @@ namespace {
 constexpr Duration kOverdue = std::chrono::seconds{3};
 /// How long before its time a delivery may have begun, where the owner's bid is not known.
 constexpr Duration kLongestRun = std::chrono::seconds{15};
+/// A message is given that part of a lease at most: a first lease lasts four of them and 3 s, and
+/// the electors' promises must reach beyond it.
+constexpr int kDelaysInLease = 15;
 }  // namespace
 
 Initiator::Initiator(const ProtocolParams& params, const CoalitionId& id, const Site& site,
@@ -84,6 +87,7 @@ void Initiator::start_round(Instant now) {
   announcement_.leader_at_formation = leader_at_formation_;
   collect_open_tasks(now);
   bids_.clear();
+  late_bid_took_ = {};
   doubled_.clear();
   award_.reset();
   confirmed_.clear();
@@ -118,8 +122,12 @@ void Initiator::on_bid(const Bid& message, Instant now) {
       take_back(entry, message, now);
     }
   }
-  if (message.round != announcement_.round || !machine_.in(State::announcing)) return;
+  if (message.round != announcement_.round) return;
   const auto known = bids_.find(message.bidder);
+  if (!machine_.in(State::announcing)) {
+    if (known == bids_.end()) note_late_bid(now);
+    return;
+  }
   if (known == bids_.end()) {
     if (bids_.size() < kMembersMax) bids_.emplace(message.bidder, message);
   } else if (known->second.instance != message.instance) {
@@ -298,8 +306,23 @@ void Initiator::note_planning_time(Instant now) {
       std::max(params_.allocation_time, std::min(3 * took / 2, params_.lease / 2));
 }
 
+/// Where the air is slower than it was thought to be, no round would have more than the leader's
+/// own bid: the others come when it is over, or is about to be.
+void Initiator::note_late_bid(Instant now) {
+  late_bid_took_ = std::max(late_bid_took_, now - announcement_.announced_at);
+  if (machine_.in(State::monitoring)) heed_late_bids();
+}
+
+/// What bids are given is bounded by the leases, as above.
+void Initiator::heed_late_bids() {
+  const Duration delay = 3 * late_bid_took_ / 4;  // there and back, and half as long again
+  params_.message_delay =
+      std::max(params_.message_delay, std::min(delay, params_.lease / kDelaysInLease));
+}
+
 void Initiator::not_formed(Event event, const Why& why, Instant now) {
   if (!machine_.fire(event)) return;
+  heed_late_bids();
   // Frees the bidders, and with them whoever has confirmed an award that not all can fly.
   messages_.push(Cancel{announcement_.round, why});
   outputs_.push(NotFormed{announcement_.round, why});

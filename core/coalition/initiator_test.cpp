@@ -268,6 +268,58 @@ TEST(Initiator, TwoProgramsThatBidUnderOneNumberAreAwardedNothing) {
   EXPECT_EQ(wanted->bids.size(), 1U) << "one of them is gone, or it had started anew";
 }
 
+/// In an air that is slower than configured every round would end before its bids are there.
+TEST(Initiator, BidsThatCameAfterARoundHadFailedGiveTheNextOneLonger) {
+  Leader leader{2};
+  const Duration configured = leader.params.message_delay;
+  for (const Duration late : {50ms, 600ms, 20'000ms}) {
+    const Instant announced = leader.now;
+    leader.hears_bid(kFirst, leader.self.round().number);
+    ASSERT_TRUE(leader.bids_close());
+    const Duration window = leader.now - announced;
+    leader.self.allocation_failed(leader.self.round(), "too few", leader.now);
+    const Instant again = leader.now + leader.params.monitoring_interval;
+    leader.now += late;
+    leader.hears_bid(kSecond, leader.self.round().number - 1);
+    EXPECT_EQ(2 * leader.self.message_delay(), window) << "that is of an earlier round";
+    leader.hears_bid(kFirst, leader.self.round().number);
+    EXPECT_EQ(2 * leader.self.message_delay(), window) << "a copy of what was in time";
+    leader.hears_bid(kSecond, leader.self.round().number);
+    EXPECT_GT(2 * leader.self.message_delay(), window);
+    const Duration took = leader.now - announced;
+    if (late < 1s) {
+      EXPECT_GT(2 * leader.self.message_delay(), took) << "it would be in time now";
+    }
+    leader.now = std::max(leader.now, again);
+    leader.self.on_timeout(leader.now);
+    const Announcement& next = leader.self.announcement();
+    EXPECT_EQ(next.bids_until, leader.now + 2 * leader.self.message_delay());
+    EXPECT_GT(next.formed_at, next.bids_until);
+  }
+  EXPECT_GT(leader.self.message_delay(), 2 * configured);
+  EXPECT_LT(leader.params.first_lease() + 4 * (leader.self.message_delay() - configured),
+            leader.params.lease)
+      << "a lease reaches beyond the award";
+}
+
+TEST(Initiator, BidsThatCameWhileItsPlannerFoundNoPlanGiveTheNextRoundLonger) {
+  Leader leader{2};
+  ASSERT_TRUE(leader.bids_close());
+  leader.now += 300ms;
+  leader.hears_bid(kFirst, 1);
+  const Duration before = leader.self.message_delay();
+  leader.self.allocation_failed(leader.self.round(), "too few", leader.now);
+  EXPECT_GT(leader.self.message_delay(), before);
+
+  Leader forms{1};
+  forms.hears_bid(kFirst, 1);
+  ASSERT_TRUE(forms.bids_close());
+  forms.now += 300ms;
+  forms.hears_bid(kSecond, 1);
+  forms.awards({kFirst});
+  EXPECT_EQ(forms.self.message_delay(), before) << "nothing was wrong";
+}
+
 /// Its delivery failed and was awarded again, for later: who assesses waits for it at its gate. An
 /// owner whose bids come too late would otherwise be asked in round after round, at once.
 TEST(Initiator, AnAssessmentIsNotLateBeforeADeliveryThatWasAwardedAgain) {

@@ -83,7 +83,8 @@ coalition::CoalitionId Leader::next_coalition() {
 }
 
 Vec2 Leader::position_at_formation(Instant now) const {
-  const Instant formed_at = now + protocol_.formation_time();
+  const Instant formed_at =
+      now + (initiator_ ? initiator_->formation_time() : protocol_.formation_time());
   return ownship_.flight().pose_at(formed_at).position();
 }
 
@@ -186,6 +187,7 @@ void Leader::end() {
   while (auto message = initiator_->poll_message()) last_words_.push(std::move(*message));
   tally_ += initiator_->tally();
   protocol_.allocation_time = initiator_->allocation_time();
+  protocol_.message_delay = initiator_->message_delay();
   initiator_.reset();
   fire(Event::ended);
 }

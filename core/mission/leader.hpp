@@ -136,7 +136,7 @@ class Leader {
 
   const Ownship& ownship_;
   Outbox& outbox_;
-  coalition::ProtocolParams protocol_;  ///< as configured, but for what a slow planner needs
+  coalition::ProtocolParams protocol_;  ///< as configured, but for what was too slow
   StateMachine<State, Event> machine_{kTable, State::idle};
   std::optional<Initiator> initiator_;  ///< unless idle
   AuthorisationRequest request_;        ///< that awaits its decision

@@ -116,6 +116,9 @@ class Initiator {
   void on_timeout(Instant now);
   /// What the planner is given: as configured, or longer where it was late.
   [[nodiscard]] Duration allocation_time() const { return params_.allocation_time; }
+  /// What a message is given: as configured, or longer where bids came after a round had failed.
+  [[nodiscard]] Duration message_delay() const { return params_.message_delay; }
+  [[nodiscard]] Duration formation_time() const { return params_.formation_time(); }
 
   /// Also where they come too late: later rounds leave the planner half as long again as it took.
   void allocated(const Round& round, std::vector<TaskAssignment> assignments, Instant now);
@@ -198,6 +201,8 @@ class Initiator {
   void make_unknown(Entry& entry);
   void heartbeat(Instant now);
   void note_planning_time(Instant now);
+  void note_late_bid(Instant now);
+  void heed_late_bids();
   [[nodiscard]] Duration stagger() const;
   void not_formed(Event event, const Why& why, Instant now);
   void finish_if_done();
@@ -213,6 +218,7 @@ class Initiator {
   Instant planning_since_{};   ///< of the newest round that got so far
   std::vector<Entry> ledger_;  ///< one entry a task, in the order of the site
   std::map<VehicleId, Bid> bids_;
+  Duration late_bid_took_{};     ///< from the announcement of this round; 0: none was late
   std::set<VehicleId> doubled_;  ///< two programs have bid under these numbers
   std::optional<Award> award_;
   /// Taking over: how far the supporters' promises reach, and how many of them must come over to
