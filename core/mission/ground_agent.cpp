@@ -426,6 +426,13 @@ bool GroundAgent::may_be_taken_back(const PendingAuthorisation& pending, Instant
   });
 }
 
+bool GroundAgent::has_granted_since(const Authorisation& refusal) const {
+  return std::ranges::any_of(pending_, [&](const PendingAuthorisation& pending) {
+    return pending.request.site == refusal.site && pending.decision && pending.decision->granted &&
+           pending.decision->decided_at > refusal.decided_at;
+  });
+}
+
 Result<TakenBack> GroundAgent::take_back(SiteId site, const std::string& by, Instant now) {
   std::vector<PendingAuthorisation*> granted;
   bool asked = false;

@@ -93,7 +93,11 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
     return false;
   }
   if (told_by(message) != kGroundStation) return false;  // to who has started anew, not to us
-  if (watching_ && sender == kGroundStation) {
+  const auto* decision = std::get_if<Authorisation>(&message);
+  // What another one has refused or taken back stands, too, whoever has the command by then.
+  const bool refuses =
+      decision != nullptr && !decision->granted && !agent_.has_granted_since(*decision);
+  if (sender == kGroundStation && (watching_ || refuses)) {
     agent_.overhear(message, now);
     take_in(message, sender, now);
     return true;

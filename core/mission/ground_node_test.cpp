@@ -462,6 +462,41 @@ TEST(GroundNode, WhoWatchesSaysNothingAndGoesOnFromWhatTheOtherHasSaid) {
   EXPECT_EQ(told.front().kind, CommandKind::hold);
 }
 
+/// Said in the moment in which the command was taken, and obeyed by who heard it.
+TEST(GroundNode, WhatTheOtherHasTakenBackIsNotAskedForByWhoHasTheCommandByThen) {
+  GroundNode ground = node();
+  ground.watch(at_seconds(1.0));
+  AuthorisationRequest request = request_until(40.0);
+  ground.on_message(request, kVehicle, at_seconds(2.0));
+  Authorisation word{request.round,      kSite, true, "Ada", at_seconds(3.0),
+                     request.deliveries, {},    {}};
+  word.until = at_seconds(40.0);
+  ground.on_message(word, kGroundStation, at_seconds(3.0));
+  ground.take_command({99}, at_seconds(10.0));
+  word.granted = false;
+  word.decided_at = at_seconds(9.9);
+  EXPECT_TRUE(ground.on_message(word, kGroundStation, at_seconds(10.1)));
+  ++request.round.number;
+  ground.on_message(request, kVehicle, at_seconds(15.0));
+  EXPECT_FALSE(ground.agent().authorise(kSite, "Ben", at_seconds(16.0), true));
+  const auto said = said_by(ground, 16.0, 20.0);
+  for (const Authorisation& decision : of<Authorisation>(said)) EXPECT_FALSE(decision.granted);
+  ASSERT_FALSE(of<SiteReport>(said).empty());
+  EXPECT_TRUE(of<SiteReport>(said).front().withdrawn);
+}
+
+TEST(GroundNode, AnOlderRefusalOfTheOtherDoesNotEndWhatIsGrantedSince) {
+  GroundNode ground = node();
+  const AuthorisationRequest request = request_until(40.0);
+  ground.on_message(request, kVehicle, at_seconds(12.0));
+  ASSERT_TRUE(ground.agent().authorise(kSite, "Ben", at_seconds(13.0), true));
+  const Authorisation late{request.round, kSite, false, "Ada", at_seconds(9.0), {}, {}, {}};
+  ground.on_message(late, kGroundStation, at_seconds(14.0));
+  ASSERT_EQ(ground.agent().authorisations().size(), 1U);
+  EXPECT_TRUE(ground.agent().authorisations().front().decision->granted);
+  EXPECT_TRUE(of<SiteReport>(said_by(ground, 14.0, 24.0)).empty());
+}
+
 TEST(GroundNode, WhoHasNotHeardAnOrderThatStandsLeavesTheAnswerToVehicles) {
   GroundNode ground = node();
   ground.watch(at_seconds(1.0));

@@ -126,6 +126,8 @@ class GroundAgent {
   [[nodiscard]] const Fleet& fleet() const { return fleet_; }
   [[nodiscard]] Fleet& fleet() { return fleet_; }
   [[nodiscard]] const std::vector<PendingAuthorisation>& authorisations() const { return pending_; }
+  /// At the same site.
+  [[nodiscard]] bool has_granted_since(const Authorisation& refusal) const;
 
  private:
   using EventKey = std::tuple<Instant, VehicleId, TaskId, EventBody>;
