@@ -92,6 +92,14 @@ TEST(FlownChecks, ADeliveryThatTheTrackDoesNotShowIsFound) {
   EXPECT_THAT(only_sentence(check_deliveries(record, {})), HasSubstr("the track does not show it"));
 }
 
+TEST(FlownChecks, ADeliveryAtTheEndOfTheRecordingIsJudged) {
+  RunRecord record = good_record();
+  auto& track = of(record, kFromSouth).track;
+  const Instant planned = deliveries_flown(record, {}).front().run.planned.value();
+  std::erase_if(track, [&](const auto& point) { return point.state.time > planned; });
+  EXPECT_TRUE(check_deliveries(record, {}).held());
+}
+
 TEST(FlownChecks, AnApproachThatOutlastsTheRecordingIsNotJudged) {
   RunRecord record = good_record();
   spec(record, kFromSouth).final_approach_m = 300.0;  // 6 s from 54 s on

@@ -199,7 +199,9 @@ std::optional<Pass> nearest_pass(const std::vector<recording::TrackPoint>& track
   if (!pass) return std::nullopt;
   const Duration half = from_seconds(kBearingHalfSpan);
   const auto before = track_at(track, pass->time - half, limits.track_gap_s);
-  const auto after = track_at(track, pass->time + half, limits.track_gap_s);
+  // The recording may end with the mission in that moment.
+  const Instant until = std::min(pass->time + half, track.back().state.time);
+  const auto after = track_at(track, until, limits.track_gap_s);
   if (!before || !after) return std::nullopt;
   const Vec2 travel = after->horizontal - before->horizontal;
   pass->heading_rad = std::atan2(travel.y(), travel.x());

@@ -93,6 +93,8 @@ class Aircraft {
   [[nodiscard]] bool takes_part() const {
     return in_coalitions() && node_->bar() == mission::Bar::none && !shares_number_;
   }
+  /// As it has told.
+  [[nodiscard]] bool shares_number() const { return shares_number_; }
   /// Precondition: running().
   [[nodiscard]] mission::Activity activity() const { return node_->agent().telemetry().activity; }
   /// Its program runs, and has brought it down.

@@ -561,10 +561,12 @@ class Team {
     using mission::EventKind;
     const mission::MissionEvent event = v.seen(told);
     const bool took_part = v.takes_part();
+    const bool shared_number = v.shares_number();
     v.on_event(event);
     finder_.on_event(event);
     // What it knows of, the operator tells another.
-    const bool leaves = took_part || event.kind() == EventKind::setup_differs;
+    const bool is_double = v.shares_number() && !shared_number;
+    const bool leaves = took_part || is_double || event.kind() == EventKind::setup_differs;
     if (leaves && !v.takes_part() && ether_.healed()) {
       hand_over_sites(finder_.report_all(vehicles_), event.time, true);
     }
