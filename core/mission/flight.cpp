@@ -151,6 +151,12 @@ void Flight::replace(const TimedPath& timed) {
   fresh_ = true;
 }
 
+void Flight::climb_from(double offset_m) {
+  plan_.height_from_m = plan_.height_to_m = offset_m;
+  ++plan_.number;
+  fresh_ = true;
+}
+
 void Flight::change_height(double offset_m, Instant now) {
   if (offset_m == plan_.height_to_m) return;
   plan_.height_from_m = height_offset_m(plan_, now);

@@ -84,6 +84,8 @@ class Flight {
   /// The plan's height from now on goes to that, from the vehicle's layer; its path and times stay,
   /// and whatever is planned next is flown there, too.
   void change_height(double offset_m, Instant now);
+  /// It is there already, or is to climb there as fast as it can.
+  void climb_from(double offset_m);
   /// Where the first plan began, which is home.
   [[nodiscard]] const Pose2& first_pose() const { return first_pose_; }
   [[nodiscard]] Vec2 home() const { return first_pose_.position(); }

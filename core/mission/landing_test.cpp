@@ -209,6 +209,21 @@ TEST(LandingByItself, TheOperatorsWordStands) {
   EXPECT_TRUE(stays.plan.lands) << "where it is: it has no range for its way home";
 }
 
+/// Through the layers of others, and without range.
+TEST(LandingByItself, IsNotBrokenOffToComeHome) {
+  Lander vehicle{short_of_range(Recovery::home)};
+  fly_to_its_end(vehicle);
+  for (const auto kind : {CommandKind::return_home, CommandKind::resume, CommandKind::land}) {
+    vehicle.order(kind);
+    vehicle.fly(5.0);
+    EXPECT_TRUE(vehicle.plan.lands) << to_string(kind);
+  }
+  EXPECT_EQ(count_trouble(vehicle.events, event::Trouble::lands_by_itself), 3) << "it is told why";
+  vehicle.order(CommandKind::hold);
+  vehicle.fly(5.0);
+  EXPECT_FALSE(vehicle.plan.lands) << "somebody may stand there";
+}
+
 void lands_by_order_alone(Lander& vehicle) {
   fly_to_its_end(vehicle);
   EXPECT_FALSE(vehicle.plan.lands);

@@ -140,7 +140,8 @@ bool Ownship::land(Instant now) {
 
 bool Ownship::come_down(const Landing& landing) {
   if (spec().is_copter()) {
-    descent_.emplace(landing, spec().height_m, ground_m_.value_or(0.0));
+    const double from_m = std::min(spec().height_m, std::max(state_.z_m, approach_m()));
+    descent_.emplace(landing, from_m, ground_m_.value_or(0.0));
     return true;
   }
   if (!is_open(landing, hazards(), config_.planning.avoidance.margin_m, config_.fence))

@@ -48,9 +48,15 @@ constexpr double kTurns_mps2 = 5.0;
 /// Whoever comes down looks at heights so far below.
 constexpr double kBelow_m = 50.0;
 constexpr double kBelowStep_s = 0.25;
+/// Who is warned so far ahead of one that comes down has given way by then.
+constexpr double kGivesWayIn_s = 9.0;
 constexpr double kLandsStep_s = 0.5;
 constexpr double kTurnMemory_s = 0.5;
 constexpr Duration kWayPeriod = std::chrono::seconds{1};
+/// Who climbs back waits so long for all who may come while it passes; then for those who may come
+/// before the end of that.
+constexpr Duration kPatientFor = std::chrono::seconds{60};
+constexpr double kCrossLeast_s = 5.0;
 /// So near to it, it is back in its layer.
 constexpr double kBack_m = 2.0;
 
@@ -164,6 +170,7 @@ void SeparationWatch::step(const Self& self, Instant now) {
   room_ = self.room;
   const bool is_back = std::abs(self.state.z_m - layer_m_) < kBack_m;
   off_layer_ = self.height_m || (off_layer_ && !is_back && self.activity != Activity::landing);
+  climbs_back_ = climbs_back_ && off_layer_ && !self.height_m;
   for (auto& [id, other] : known_) look(id, other, self, now);
   const bool wrong = any_conflict();
   std::erase_if(known_, [&](const auto& entry) {
@@ -217,12 +224,36 @@ double SeparationWatch::with_room_for_others(const Self& self) const {
   return side > 0.0 ? std::max(layer_m_, height_m) : std::min(layer_m_, height_m);
 }
 
-/// Whether it may be beside this one before that has passed its height, however it turns.
-bool SeparationWatch::may_come(const Self& self, const Other& other, Instant now) const {
+/// Whether it may be beside this one within that, however it turns.
+bool SeparationWatch::may_come(const Self& self, const Other& other, double within_s,
+                               Instant now) const {
   const double age_s = to_seconds(now - other.heard + other.delay);
   const Vec2 apart = position_at(other.state, age_s) - Vec2{self.state.x_m, self.state.y_m};
   const double speed_mps = self.state.groundspeed_mps + other.state.groundspeed_mps;
-  return apart.norm() < params_.separation_horizontal_m + kCross_s * speed_mps;
+  return apart.norm() < params_.separation_horizontal_m + within_s * speed_mps;
+}
+
+bool SeparationWatch::may_pass(const Self& self, const Other& other, Instant now) const {
+  if (passes_near(approach(self, other, now))) return true;
+  // Others may circle near by for good.
+  const bool is_patient = !climbs_back_ || now < climbs_since_ + kPatientFor;
+  return may_come(self, other, is_patient ? kCross_s : kCrossLeast_s, now);
+}
+
+/// Who came down through the heights of others does not wait in one of them.
+double SeparationWatch::below_all(const Self& self, double height_m, Instant now) const {
+  const double apart_m = params_.separation_vertical_m + kRoom_m;
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const auto& [id, other] : known_) {
+      const double off_m = std::abs(other.state.z_m - height_m);
+      if (off_m >= params_.separation_vertical_m + kClearHeight_m || !may_pass(self, other, now))
+        continue;
+      height_m = other.state.z_m - apart_m;
+      moved = true;
+    }
+  }
+  return std::max(height_m, params_.separation_floor_m);
 }
 
 /// To where it is to fly, as far as nobody passes near on the way: where it comes down, or back up,
@@ -244,13 +275,25 @@ void SeparationWatch::go_on(const Self& self, Instant now) {
     const double ahead_m = side * (other.state.z_m - from_m);
     const double beyond_m = side * (other.state.z_m - base_m_);
     if (ahead_m < 0.0 || beyond_m >= apart_m) continue;
-    if (!passes_near(approach(self, other, now)) && !may_come(self, other, now)) continue;
+    if (!may_pass(self, other, now)) continue;
     const double waits_m = other.state.z_m - side * apart_m;
-    const double stop_m = side * (waits_m - from_m) < 0.0 ? from_m : waits_m;
+    const double stop_m = side * (waits_m - from_m) < 0.0 && !climbs_back_ ? from_m : waits_m;
     if (side * (stop_m - way_m) < 0.0) way_m = stop_m;
   }
+  if (climbs_back_ && way_m < base_m_) way_m = below_all(self, way_m, now);
   // What it flies is not changed by the tenths of metres that it is off.
   if (way_m == base_m_ || std::abs(way_m - way_m_) >= kClearHeight_m) way_m_ = way_m;
+}
+
+bool SeparationWatch::climb_back(const VehicleState& own, double least_m, Instant now) {
+  if (params_.separation_look_ahead == Duration{}) return false;
+  off_layer_ = climbs_back_ = true;
+  climbs_since_ = now;
+  target_.reset();
+  for (auto& [id, other] : known_) other.yields = false;
+  way_m_ = std::min(layer_m_, std::max({own.z_m, least_m, params_.separation_floor_m}));
+  next_way_ = now + kWayPeriod;  // it has heard those between by then
+  return true;
 }
 
 bool SeparationWatch::is_free_below(const VehicleState& own, Turns turns, Instant now) const {
@@ -265,7 +308,8 @@ bool SeparationWatch::can_be_below(const VehicleState& own, const Other& other, 
   const bool lands = other.activity == Activity::landing && std::abs(below_m) < kBelow_m;
   if ((below_m <= 0.0 && !lands) || now - other.heard > kForgotten) return false;
   const double age_s = to_seconds(now - other.heard + other.delay);
-  const double look_s = to_seconds(params_.separation_look_ahead);
+  double look_s = to_seconds(params_.separation_look_ahead);
+  if (turns == Turns::soon) look_s = std::min(look_s, kGivesWayIn_s);
   const double from_s =
       lands ? 0.0 : std::max(0.0, below_m - params_.separation_vertical_m) / kSinksMost_mps;
   const double to_s =
@@ -273,7 +317,7 @@ bool SeparationWatch::can_be_below(const VehicleState& own, const Other& other, 
             : std::min(look_s, (below_m + params_.separation_vertical_m) / kSinksLeast_mps);
   const auto near = [&](double s) {
     const double other_s = age_s + s;
-    if (turns == Turns::as_now) {
+    if (turns != Turns::whatever) {
       const Vec2 apart =
           turned_at(other.state, other.turn_radps, other_s) - turned_at(own, turn_radps_, s);
       return apart.norm() < kClearFactor * params_.separation_horizontal_m + kMargin_mps * other_s;
@@ -288,6 +332,15 @@ bool SeparationWatch::can_be_below(const VehicleState& own, const Other& other, 
   return false;
 }
 
+/// Along what it flies, where that is known.
+Vec2 SeparationWatch::own_at(const Self& self, double seconds, Instant now) const {
+  const double age_s = std::clamp(to_seconds(now - self.state.time), 0.0, 1.0);
+  if (self.way == nullptr) return turned_at(self.state, turn_radps_, age_s + seconds);
+  const Vec2 flown =
+      self.way->pose_at(now + from_seconds(seconds)).position() - self.way->pose_at(now).position();
+  return position_at(self.state, age_s) + flown;
+}
+
 SeparationWatch::Approach SeparationWatch::approach(const Self& self, const Other& other,
                                                     Instant now) const {
   const double age_s = to_seconds(now - other.heard + other.delay);
@@ -297,8 +350,7 @@ SeparationWatch::Approach SeparationWatch::approach(const Self& self, const Othe
     if (!lands) {
       return position_at(other.state, age_s + s) - position_at(self.state, own_age_s + s);
     }
-    return turned_at(other.state, other.turn_radps, age_s + s) -
-           turned_at(self.state, turn_radps_, own_age_s + s);
+    return turned_at(other.state, other.turn_radps, age_s + s) - own_at(self, s, now);
   };
   // Others stay at their height, or give way; who lands comes down all the while.
   const double sinks_mps = lands ? std::max(0.0, -other.climb_mps) : 0.0;
@@ -345,13 +397,15 @@ bool SeparationWatch::breaks(const Approach& a) const {
          a.vertical_m < params_.separation_vertical_m + a.height_margin_m;
 }
 
-/// Who gives way looks at all heights from its layer to where it has gone: it is to come back.
+/// Who gives way looks at all heights from its layer to where it has gone: it is to come back. Who
+/// lands comes down to them.
 bool SeparationWatch::still_breaks(const Approach& a, const Self& self, const Other& other) const {
   if (a.horizontal_m >= kClearFactor * params_.separation_horizontal_m + a.margin_m) return false;
   const double within_m = params_.separation_vertical_m + kClearHeight_m;
   if (!other.yields) return a.vertical_m < within_m;
   const auto [low, high] = std::minmax({base_m_, self.state.z_m, target_.value_or(base_m_)});
-  return other.state.z_m > low - within_m && other.state.z_m < high + within_m;
+  const double comes_to_m = std::min(other.state.z_m, a.height_m - a.around_m);
+  return other.state.z_m > low - within_m && comes_to_m < high + within_m;
 }
 
 bool SeparationWatch::passes_near(const Approach& a) const {
@@ -434,11 +488,16 @@ void SeparationWatch::tell(VehicleId id, Other& other, const Approach& a, Instan
 /// Away from the other one; through its height only where there is no other way, and time for it.
 std::optional<double> SeparationWatch::height_for(VehicleId id, const Other& other,
                                                   const Self& self, Instant now) const {
-  const double above_m = self.state.z_m - approach(self, other, now).height_m;
+  // Who lands is not passed upwards, whatever its height will be by then.
+  const bool lands = other.activity == Activity::landing;
+  const double its_m = lands ? other.state.z_m : approach(self, other, now).height_m;
+  const double above_m = self.state.z_m - its_m;
   const bool level = std::abs(above_m) < kLevel_m;
   const bool up = level ? self_ > id : above_m > 0.0;
   if (const auto away = free_height(other, up, self, now)) return away;
   const auto through = free_height(other, !up, self, now);
+  // There is no room below, and it will have come past.
+  if (lands && through && self.state.z_m > approach(self, other, now).height_m) return through;
   if (!through || level) return through;
   const double takes_s = std::abs(*through - self.state.z_m) / kHeightRate_mps + kClimbLag_s;
   return takes_s < approach(self, other, now).in_s ? through : std::nullopt;

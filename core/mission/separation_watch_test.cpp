@@ -75,6 +75,12 @@ class Flyer {
     return told;
   }
   [[nodiscard]] VehicleId id() const { return VehicleId{id_}; }
+  /// From a landing, at that height.
+  void climb_back(double height_m) {
+    state.z_m = height_m;
+    plan_.height_from_m = plan_.height_to_m = height_m - layer_m_;
+    EXPECT_TRUE(watch.climb_back(state, 0.0, {}));
+  }
 
   SeparationWatch watch;
   VehicleState state;
@@ -220,6 +226,50 @@ TEST(SeparationWatch, WhoIsBelowOneThatLandsGivesWayInTime) {
     EXPECT_EQ(sky.flyers[0].gave_way, above_m > 20.0);
     EXPECT_GE(sky.least.vertical_m, 5.0) << above_m;
   }
+}
+
+/// It comes from far above, and is at the other's height where they meet: that takes 12 s.
+TEST(SeparationWatch, WhoGivesWayToOneThatLandsDoesSoUntilThatHasPassed) {
+  Sky sky{{Flyer{1, {-300.0, 0.0}, 0.0, 25.0}, Flyer{2, {300.0, 2.0}, kPi, 25.0, kLayer_m + 60.0}}};
+  sky.flyers[1].activity = Activity::landing;
+  sky.flyers[1].sinks_mps = 5.0;
+  sky.fly(10.0);
+  EXPECT_EQ(sky.flyers[0].restored, 0);
+  EXPECT_LT(sky.flyers[0].state.z_m, kLayer_m - 5.0) << "not up, past it";
+  sky.fly(20.0);
+  EXPECT_EQ(sky.flyers[0].restored, 1);
+  EXPECT_GE(sky.least.vertical_m, 5.0);
+}
+
+/// They meet where it would pass the other's height.
+TEST(SeparationWatch, WhoClimbsBackFromALandingWaitsBelowWhoMayCome) {
+  for (const double from_m : {80.0, 97.0}) {  // below the other's height, and at it
+    Sky sky{{Flyer{3, {-300.0, 0.0}, 0.0, 25.0}, Flyer{2, {300.0, 2.0}, kPi, 25.0, 100.0}}};
+    Flyer& climber = sky.flyers[0];
+    climber.climb_back(from_m);
+    sky.fly(11.0);
+    EXPECT_GE(sky.least.vertical_m, 5.0) << from_m;
+    EXPECT_NEAR(climber.state.z_m, 93.0, 2.0);
+    sky.fly(40.0);
+    EXPECT_NEAR(climber.state.z_m, kLayer_m, 1.0) << "nobody can come";
+    EXPECT_GE(sky.least.vertical_m, 5.0);
+    EXPECT_FALSE(sky.flyers[1].gave_way);
+  }
+}
+
+/// Beside it all the time, and free to turn.
+TEST(SeparationWatch, WhoClimbsBackDoesNotStayAtTheHeightOfAnother) {
+  Sky sky{{Flyer{3, {0.0, 0.0}, 0.0, 25.0}, Flyer{2, {0.0, 200.0}, 0.0, 25.0, 100.0}}};
+  sky.flyers[0].climb_back(97.0);
+  sky.fly(15.0);
+  EXPECT_NEAR(sky.flyers[0].state.z_m, 93.0, 0.5);
+  EXPECT_TRUE(sky.flyers[0].warnings.empty());
+
+  Sky narrow{{Flyer{3, {0.0, 0.0}, 0.0, 25.0}, Flyer{1, {0.0, 200.0}, 0.0, 25.0, 100.0},
+              Flyer{2, {0.0, -200.0}, 0.0, 25.0, 92.0}}};
+  narrow.flyers[0].climb_back(97.0);
+  narrow.fly(20.0);
+  EXPECT_NEAR(narrow.flyers[0].state.z_m, 85.0, 0.5) << "nor between layers without room";
 }
 
 TEST(SeparationWatch, OnTheGroundNobodyIsWarned) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // News for the failsafe, and what the vehicle does because of it.
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -11,11 +12,17 @@ namespace {
 
 /// Within that it has heard those below, and waits for them no longer than to that.
 constexpr Duration kHearsOthers = std::chrono::seconds{2};
-constexpr Duration kWaitsToLand = std::chrono::seconds{60};
-/// Laps that are left of its range: then it is content with who is free as all turn now; with less
-/// it waits no longer.
-constexpr double kLapsToChoose = 0.7;
-constexpr double kLapsLeast = 0.1;
+/// The longer it has waited, and the fewer laps are left of its range, the less it looks for.
+struct Choice {
+  SeparationWatch::Turns turns;
+  Duration until;    ///< since it could come down
+  double laps_left;  ///< more than these
+};
+constexpr std::array kChoices{
+    Choice{SeparationWatch::Turns::whatever, std::chrono::seconds{40}, 0.7},
+    Choice{SeparationWatch::Turns::as_now, std::chrono::seconds{55}, 0.4},
+    Choice{SeparationWatch::Turns::soon, std::chrono::seconds{65}, 0.1},
+};
 
 }  // namespace
 
@@ -32,10 +39,18 @@ void VehicleAgent::Impl::obey(CommandKind order, Instant now) {
   outbox.report(event::Commanded{order}, {}, {}, now);
   // It stands on the ground: nothing is flown before it is in the air again.
   if (ownship_.landing() && ownship_.state().on_ground()) return;
+  // It has no range to climb again for, and comes home by what it does.
+  const bool by_itself = ownship_.landing() && !lands_;
+  const bool goes_on =
+      by_itself && (order == CommandKind::return_home || order == CommandKind::resume);
   lands_ = order == CommandKind::land;
   told_barred_ = false;
   const auto* response = failsafe_.update(now, {.order = order});
-  if (response != nullptr) respond(*response, now);
+  if (goes_on) {
+    outbox.report(event::VehicleTrouble{event::Trouble::lands_by_itself}, {}, {}, now);
+  } else if (response != nullptr) {
+    respond(*response, now);
+  }
 }
 
 /// In its orbit at home, or in the one where its range has ended and it was not told to stay.
@@ -67,12 +82,13 @@ void VehicleAgent::Impl::come_down(Instant now) {
   if (!may_land_at_) may_land_at_ = std::max(now, *hears_below_at_);
   if (now < *may_land_at_) return;
   const double laps_left = ownship_.range_left(now) / ownship_.lap_m();
-  const bool can_wait = now < *may_land_at_ + kWaitsToLand && laps_left > kLapsLeast;
-  using Turns = SeparationWatch::Turns;
-  const Turns turns = laps_left > kLapsToChoose ? Turns::whatever : Turns::as_now;
-  const bool is_free =
-      (lands_ || !leader_.leading()) && separation_.is_free_below(ownship_.state(), turns, now);
-  if (can_wait && !is_free) return;
+  const auto* const choice = std::ranges::find_if(kChoices, [&](const Choice& c) {
+    return now < *may_land_at_ + c.until && laps_left > c.laps_left;
+  });
+  const bool waits_for_all = !lands_ && leader_.leading();
+  if (choice != kChoices.end() &&
+      (waits_for_all || !separation_.is_free_below(ownship_.state(), choice->turns, now)))
+    return;
   std::optional<event::Trouble> trouble;
   if (!ownship_.land(now)) {
     may_land_at_.reset();
@@ -148,12 +164,20 @@ void VehicleAgent::Impl::watch_traffic(Instant now) {
 /// By its height alone: what it flies, and when, stays. Where it flies for the sake of aircraft, it
 /// keeps separate there.
 void VehicleAgent::Impl::watch_separation(Instant now) {
+  const bool landed_before = std::exchange(was_landing_, ownship_.landing());
+  const bool goes_around = landed_before && !ownship_.landing() && !ownship_.state().on_ground();
+  if (goes_around && separation_.climb_back(ownship_.state(), ownship_.approach_m(), now)) {
+    ownship_.flight().climb_from(separation_.offset_m());
+  }
   if (!separation_.watches() && !traffic_.gives_way()) return;
+  const Flight& flight = ownship_.flight();
+  const bool by_plan = flight.started() && !ownship_.landing() && !failsafe_.facts().piloted;
   separation_.step({.state = ownship_.state(),
                     .activity = activity(),
                     .height_m = traffic_.height_m(),
                     .room = traffic_.room(),
-                    .piloted = failsafe_.facts().piloted},
+                    .piloted = failsafe_.facts().piloted,
+                    .way = by_plan ? &flight.plan().timed : nullptr},
                    now);
   while (auto news = separation_.poll_event()) outbox.report(*std::move(news), {}, {}, now);
   ownship_.flight().change_height(separation_.offset_m(), now);

@@ -97,6 +97,7 @@ class VehicleAgent::Impl {
   std::optional<Instant> may_land_at_;         ///< where the air below is free
   std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   bool lands_ = false;                         ///< by order, once it is at home
+  bool was_landing_ = false;                   ///< with the last state
   bool told_barred_ = false;                   ///< that a hazard keeps it from that
   std::optional<CommandKind> order_at_start_;  ///< heard before, on the way up perhaps
 };

@@ -133,8 +133,9 @@ export default [
     slip: 'a bid for the round before counts, with the pose that was to be then',
     promise: 'an award goes to who has bid for its round',
     file: initiator,
-    from: 'if (message.round != announcement_.round || !machine_.in(State::announcing)) return;',
-    to: 'if (!machine_.in(State::announcing)) return;',
+    from: `  if (message.round != announcement_.round) return;
+  const auto known = bids_`,
+    to: '  const auto known = bids_',
   },
   {
     name: 'award-to-two',
@@ -175,5 +176,13 @@ export default [
     file: initiator,
     from: 'return heard != heard_.end() && now - heard->second <= params_.silence;',
     to: 'return heard != heard_.end() && now - heard->second <= params_.silence + params_.lease;',
+  },
+  {
+    name: 'late-bids-change-nothing',
+    slip: 'bids that came after a round had failed give the next one no longer',
+    promise: 'a coalition forms in an air that is slower than it was thought to be',
+    file: initiator,
+    from: 'if (known == bids_.end()) note_late_bid(now);',
+    to: '',
   },
 ];

@@ -130,8 +130,8 @@ export default [
     slip: 'who waits for the air below waits on when its range is used up',
     promise: 'nobody flies further than its range',
     file: 'core/mission/vehicle_agent_failsafe.cpp',
-    from: 'now < *may_land_at_ + kWaitsToLand && laps_left > kLapsLeast;',
-    to: 'now < *may_land_at_ + kWaitsToLand && laps_left > -kLapsLeast;',
+    from: 'return now < *may_land_at_ + c.until && laps_left > c.laps_left;',
+    to: 'return now < *may_land_at_ + c.until && laps_left > -c.laps_left;',
   },
   {
     name: 'lands-whom-the-operator-holds',
@@ -199,6 +199,22 @@ export default [
     file: separation,
     from: 'const bool up = level ? self_ > id : above_m > 0.0;',
     to: 'const bool up = level ? self_ > id : above_m < 0.0;',
+  },
+  {
+    name: 'clear-of-who-comes-down-later',
+    slip: 'who gives way to one that lands is clear of it while that is above all that it gave way in',
+    promise: 'who is below one that lands gives way until it has passed',
+    file: separation,
+    from: 'const double comes_to_m = std::min(other.state.z_m, a.height_m - a.around_m);',
+    to: 'const double comes_to_m = other.state.z_m;',
+  },
+  {
+    name: 'waits-at-the-height-of-another',
+    slip: 'who was to land and does not after all waits at the height of another',
+    promise: 'nobody comes near to another, however it is ordered about',
+    file: separation,
+    from: 'if (climbs_back_ && way_m < base_m_) way_m = below_all(self, way_m, now);',
+    to: '',
   },
   {
     name: 'delay-not-counted',

@@ -11,6 +11,7 @@
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
 #include "skein/coalition/protocol_params.hpp"
+#include "skein/domain/path.hpp"
 #include "skein/domain/vehicle.hpp"
 #include "skein/mission/events.hpp"
 #include "skein/mission/height_band.hpp"
@@ -64,6 +65,8 @@ class SeparationWatch {
     std::optional<double> height_m = {};
     HeightBand room = {};
     bool piloted = false;  ///< others fly it
+    /// What it flies; null: it turns as now, as far as anybody knows.
+    const TimedPath* way = nullptr;
   };
 
   /// `layer_m`: the vehicle's own height, above the origin. Another program under its number is
@@ -89,10 +92,18 @@ class SeparationWatch {
 
   /// It is about to come down, and looks at who is below, until it is told that it is not.
   void look_below(bool looks) { looks_below_ = looks; }
-  enum class Turns : std::uint8_t { whatever, as_now };
-  /// Came it down now, nobody through whose height it then passes within seconds can be near,
-  /// however both turn, or as both turn now. Of those that it has heard of since it looks below.
+  enum class Turns : std::uint8_t {
+    whatever,  ///< however both turn
+    as_now,    ///< as both turn now
+    soon       ///< the same, of who would have no time to give way
+  };
+  /// Came it down now, nobody through whose height it then passes within seconds can be near. Of
+  /// those that it has heard of since it looks below.
   [[nodiscard]] bool is_free_below(const VehicleState& own, Turns turns, Instant now) const;
+
+  /// It does not land after all: it climbs to `least_m` at once, and back to its layer as one does
+  /// that gave way to aircraft. False where others are not watched.
+  bool climb_back(const VehicleState& own, double least_m, Instant now);
 
   /// It knows of others: step() is to be called with every state.
   [[nodiscard]] bool watches() const {
@@ -124,7 +135,7 @@ class SeparationWatch {
     bool told = false;
     Instant told_at = Instant::min();
   };
-  /// Of both when they are closest, as they fly now.
+  /// Of both when they are closest, as they fly now. Towards who lands it looks along its own way.
   struct Approach {
     double horizontal_m = 0.0;
     double vertical_m = 0.0;
@@ -155,7 +166,11 @@ class SeparationWatch {
   void keep_free(const Self& self, Instant now);
   void go_on(const Self& self, Instant now);
   [[nodiscard]] double with_room_for_others(const Self& self) const;
-  [[nodiscard]] bool may_come(const Self& self, const Other& other, Instant now) const;
+  [[nodiscard]] bool may_pass(const Self& self, const Other& other, Instant now) const;
+  [[nodiscard]] double below_all(const Self& self, double height_m, Instant now) const;
+  [[nodiscard]] Vec2 own_at(const Self& self, double seconds, Instant now) const;
+  [[nodiscard]] bool may_come(const Self& self, const Other& other, double within_s,
+                              Instant now) const;
   [[nodiscard]] bool has_taken_off(const VehicleState& own) const;
   [[nodiscard]] bool on_the_way(const VehicleState& own, const VehicleState& other) const;
   [[nodiscard]] bool any_conflict() const;
@@ -174,7 +189,9 @@ class SeparationWatch {
   bool looks_below_ = false;
   std::optional<VehicleState> last_;  ///< its own
   double turn_radps_ = 0.0;           ///< over the last of them
-  bool off_layer_ = false;            ///< by Self::height_m, or not back from there yet
+  bool off_layer_ = false;    ///< by Self::height_m or a landing, or not back from there yet
+  bool climbs_back_ = false;  ///< from a landing
+  Instant climbs_since_{};
   HeightBand room_;
   Instant next_way_ = Instant::min();
   Instant chosen_at_ = Instant::min();
