@@ -168,6 +168,11 @@ void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
   if (!contains(message.members, self_)) return;
   if (message.round.coalition != round_.coalition || message.round.number < round_.number) return;
   if (award_ && message.sent_at <= award_->awarded_at) return;
+  // A delivery that an earlier leader took for flown, perhaps, this one may have flown yet.
+  std::erase_if(over_, [&message](const Over& over) {
+    return over.since == Instant::min() && over.task.site == message.site &&
+           !contains(message.unknown, over.task);
+  });
   // Renewals were lost, and the leader still counts on the plan that is held for a successor.
   const bool heard_again = machine_.in(State::orphaned) && message.round == round_ &&
                            message.lease_until > now && elector_.follows_leader();

@@ -90,6 +90,27 @@ TEST(Participant, OwnsATaskUntilItsLeaseEndsAndNoLonger) {
   EXPECT_FALSE(m.self.holds(kTask, end, end));
 }
 
+/// It has it flown, so who assesses waits for that.
+TEST(Participant, WhatAnotherLeaderTakesForFlownPerhapsIsNotOverWhereItsOwnDoesNot) {
+  Member m;
+  m.is_member_of(1);
+  const TaskId delivery{kTask.site, TaskKind::deliver, 7};
+  LeaseRenewal other = m.renewal(1, m.now);
+  other.round.coalition.leader = VehicleId{9};
+  other.unknown = {delivery};
+  m.self.on_lease_renewal(other, m.now);
+  EXPECT_TRUE(m.self.over_since(delivery));
+  LeaseRenewal own = m.renewal(1, m.now + 1s);
+  own.site = kTask.site;
+  own.unknown = {delivery};
+  m.self.on_lease_renewal(own, m.now + 1s);
+  EXPECT_TRUE(m.self.over_since(delivery)) << "its own leader takes it so, too";
+  own = m.renewal(1, m.now + 2s);
+  own.site = kTask.site;
+  m.self.on_lease_renewal(own, m.now + 2s);
+  EXPECT_FALSE(m.self.over_since(delivery));
+}
+
 TEST(Participant, AnAwardThatComesAfterItsLeaseIsNone) {
   Member m;
   m.is_called(1);

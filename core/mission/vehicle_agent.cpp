@@ -91,6 +91,7 @@ void VehicleAgent::Impl::step(Instant now) {
   pump(now);
   watch_range(now);
   watch_fence(now);
+  watch_orbit(now);
   idle(now);
   come_down(now);
   pump(now);

@@ -207,6 +207,13 @@ void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
   respond(*failsafe_.update(now, {.path_barred = true}), now);
 }
 
+/// A hazard near its way, which it flew on, bars the orbit in which it waits by now.
+void VehicleAgent::Impl::watch_orbit(Instant now) {
+  if (!flyer_.late() || !ownship_.flight().poll_orbit_barred()) return;
+  if (ownship_.keeps_clear(now)) return;
+  respond(*failsafe_.update(now, {.path_barred = true}), now);
+}
+
 /// While it still can it turns for home (or holds, to be recovered), whatever it was about. Only a
 /// run that has begun is flown to its end: that was planned with the way home.
 void VehicleAgent::Impl::watch_range(Instant now) {

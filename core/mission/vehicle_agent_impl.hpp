@@ -78,6 +78,7 @@ class VehicleAgent::Impl {
   void watch_range(Instant now);
   void watch_wind(const VehicleState& state, Instant now);
   void watch_fence(Instant now);
+  void watch_orbit(Instant now);
   [[nodiscard]] bool may_leave_layer() const;
   void watch_traffic(Instant now);
   void watch_separation(Instant now);

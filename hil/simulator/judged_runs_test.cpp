@@ -46,6 +46,17 @@ TEST(JudgedRuns, TheSmallMissionHolds) {
   EXPECT_TRUE(run.sites_done);
 }
 
+/// Missions with faults that broke something once: a hazard in the orbit of who waited, late; an
+/// assessment before a delivery that another leader took for flown, perhaps; bids that came late.
+TEST(JudgedRuns, WhatWasBrokenOnceHolds) {
+  const auto scenario =
+      configuration::load_scenario(std::string{SKEIN_SOURCE_DIR} + "/scenarios/faults-8.yaml");
+  ASSERT_TRUE(scenario) << scenario.error().message;
+  for (const std::uint64_t seed : {974579U, 976435U, 922946U, 954330U, 961985U}) {
+    EXPECT_THAT(names(fly(*scenario, seed, "mixed")), IsEmpty()) << seed;
+  }
+}
+
 TEST(JudgedRuns, AMissionThatIsNotFinishedIsFound) {
   auto scenario = small();
   scenario.duration_max = std::chrono::seconds{20};
