@@ -171,6 +171,7 @@ void SeparationWatch::step(const Self& self, Instant now) {
   const bool is_back = std::abs(self.state.z_m - layer_m_) < kBack_m;
   off_layer_ = self.height_m || (off_layer_ && !is_back && self.activity != Activity::landing);
   climbs_back_ = climbs_back_ && off_layer_ && !self.height_m;
+  look_along_way(self, now);
   for (auto& [id, other] : known_) look(id, other, self, now);
   const bool wrong = any_conflict();
   std::erase_if(known_, [&](const auto& entry) {
@@ -332,13 +333,29 @@ bool SeparationWatch::can_be_below(const VehicleState& own, const Other& other, 
   return false;
 }
 
-/// Along what it flies, where that is known.
-Vec2 SeparationWatch::own_at(const Self& self, double seconds, Instant now) const {
+/// Where it will be at each step of those that nearest_s() looks at: along what it flies, where
+/// that is known.
+void SeparationWatch::look_along_way(const Self& self, Instant now) {
+  own_ahead_.clear();
+  const auto lands = [](const auto& entry) { return entry.second.activity == Activity::landing; };
+  if (std::ranges::none_of(known_, lands)) return;
   const double age_s = std::clamp(to_seconds(now - self.state.time), 0.0, 1.0);
-  if (self.way == nullptr) return turned_at(self.state, turn_radps_, age_s + seconds);
-  const Vec2 flown =
-      self.way->pose_at(now + from_seconds(seconds)).position() - self.way->pose_at(now).position();
-  return position_at(self.state, age_s) + flown;
+  const Vec2 here = position_at(self.state, age_s);
+  const double begin_m = self.way != nullptr ? self.way->distance_at(now) : 0.0;
+  const Vec2 begin = self.way != nullptr ? self.way->pose_at(now).position() : Vec2{0.0, 0.0};
+  for (double s = 0.0; s <= to_seconds(params_.separation_look_ahead); s += kLandsStep_s) {
+    if (self.way == nullptr) {
+      own_ahead_.push_back(turned_at(self.state, turn_radps_, age_s + s));
+      continue;
+    }
+    const double flown_m = begin_m + s * self.state.groundspeed_mps;
+    own_ahead_.emplace_back(here + self.way->pose_at_distance(flown_m).position() - begin);
+  }
+}
+
+const Vec2& SeparationWatch::own_at(double seconds) const {
+  const auto step = static_cast<std::size_t>(std::lround(seconds / kLandsStep_s));
+  return own_ahead_[std::min(step, own_ahead_.size() - 1)];
 }
 
 SeparationWatch::Approach SeparationWatch::approach(const Self& self, const Other& other,
@@ -350,7 +367,7 @@ SeparationWatch::Approach SeparationWatch::approach(const Self& self, const Othe
     if (!lands) {
       return position_at(other.state, age_s + s) - position_at(self.state, own_age_s + s);
     }
-    return turned_at(other.state, other.turn_radps, age_s + s) - own_at(self, s, now);
+    return turned_at(other.state, other.turn_radps, age_s + s) - own_at(s);
   };
   // Others stay at their height, or give way; who lands comes down all the while.
   const double sinks_mps = lands ? std::max(0.0, -other.climb_mps) : 0.0;

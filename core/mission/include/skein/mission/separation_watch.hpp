@@ -7,6 +7,7 @@
 #include <deque>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "skein/base/ids.hpp"
 #include "skein/base/time.hpp"
@@ -168,7 +169,8 @@ class SeparationWatch {
   [[nodiscard]] double with_room_for_others(const Self& self) const;
   [[nodiscard]] bool may_pass(const Self& self, const Other& other, Instant now) const;
   [[nodiscard]] double below_all(const Self& self, double height_m, Instant now) const;
-  [[nodiscard]] Vec2 own_at(const Self& self, double seconds, Instant now) const;
+  void look_along_way(const Self& self, Instant now);
+  [[nodiscard]] const Vec2& own_at(double seconds) const;
   [[nodiscard]] bool may_come(const Self& self, const Other& other, double within_s,
                               Instant now) const;
   [[nodiscard]] bool has_taken_off(const VehicleState& own) const;
@@ -192,6 +194,7 @@ class SeparationWatch {
   bool off_layer_ = false;    ///< by Self::height_m or a landing, or not back from there yet
   bool climbs_back_ = false;  ///< from a landing
   Instant climbs_since_{};
+  std::vector<Vec2> own_ahead_;  ///< while somebody lands
   HeightBand room_;
   Instant next_way_ = Instant::min();
   Instant chosen_at_ = Instant::min();
