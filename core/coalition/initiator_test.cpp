@@ -281,23 +281,23 @@ TEST(Initiator, BidsThatCameAfterARoundHadFailedGiveTheNextOneLonger) {
     const Instant again = leader.now + leader.params.monitoring_interval;
     leader.now += late;
     leader.hears_bid(kSecond, leader.self.round().number - 1);
-    EXPECT_EQ(2 * leader.self.message_delay(), window) << "that is of an earlier round";
+    EXPECT_EQ(2 * leader.self.params().message_delay, window) << "that is of an earlier round";
     leader.hears_bid(kFirst, leader.self.round().number);
-    EXPECT_EQ(2 * leader.self.message_delay(), window) << "a copy of what was in time";
+    EXPECT_EQ(2 * leader.self.params().message_delay, window) << "a copy of what was in time";
     leader.hears_bid(kSecond, leader.self.round().number);
-    EXPECT_GT(2 * leader.self.message_delay(), window);
+    EXPECT_GT(2 * leader.self.params().message_delay, window);
     const Duration took = leader.now - announced;
     if (late < 1s) {
-      EXPECT_GT(2 * leader.self.message_delay(), took) << "it would be in time now";
+      EXPECT_GT(2 * leader.self.params().message_delay, took) << "it would be in time now";
     }
     leader.now = std::max(leader.now, again);
     leader.self.on_timeout(leader.now);
     const Announcement& next = leader.self.announcement();
-    EXPECT_EQ(next.bids_until, leader.now + 2 * leader.self.message_delay());
+    EXPECT_EQ(next.bids_until, leader.now + 2 * leader.self.params().message_delay);
     EXPECT_GT(next.formed_at, next.bids_until);
   }
-  EXPECT_GT(leader.self.message_delay(), 2 * configured);
-  EXPECT_LT(leader.params.first_lease() + 4 * (leader.self.message_delay() - configured),
+  EXPECT_GT(leader.self.params().message_delay, 2 * configured);
+  EXPECT_LT(leader.params.first_lease() + 4 * (leader.self.params().message_delay - configured),
             leader.params.lease)
       << "a lease reaches beyond the award";
 }
@@ -307,9 +307,9 @@ TEST(Initiator, BidsThatCameWhileItsPlannerFoundNoPlanGiveTheNextRoundLonger) {
   ASSERT_TRUE(leader.bids_close());
   leader.now += 300ms;
   leader.hears_bid(kFirst, 1);
-  const Duration before = leader.self.message_delay();
+  const Duration before = leader.self.params().message_delay;
   leader.self.allocation_failed(leader.self.round(), "too few", leader.now);
-  EXPECT_GT(leader.self.message_delay(), before);
+  EXPECT_GT(leader.self.params().message_delay, before);
 
   Leader forms{1};
   forms.hears_bid(kFirst, 1);
@@ -317,7 +317,7 @@ TEST(Initiator, BidsThatCameWhileItsPlannerFoundNoPlanGiveTheNextRoundLonger) {
   forms.now += 300ms;
   forms.hears_bid(kSecond, 1);
   forms.awards({kFirst});
-  EXPECT_EQ(forms.self.message_delay(), before) << "nothing was wrong";
+  EXPECT_EQ(forms.self.params().message_delay, before) << "nothing was wrong";
 }
 
 /// Its delivery failed and was awarded again, for later: who assesses waits for it at its gate. An

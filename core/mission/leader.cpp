@@ -83,8 +83,8 @@ coalition::CoalitionId Leader::next_coalition() {
 }
 
 Vec2 Leader::position_at_formation(Instant now) const {
-  const Instant formed_at =
-      now + (initiator_ ? initiator_->formation_time() : protocol_.formation_time());
+  const auto& protocol = initiator_ ? initiator_->params() : protocol_;
+  const Instant formed_at = now + protocol.formation_time();
   return ownship_.flight().pose_at(formed_at).position();
 }
 
@@ -186,8 +186,7 @@ void Leader::end() {
   // Its last words: cancels and releases.
   while (auto message = initiator_->poll_message()) last_words_.push(std::move(*message));
   tally_ += initiator_->tally();
-  protocol_.allocation_time = initiator_->allocation_time();
-  protocol_.message_delay = initiator_->message_delay();
+  protocol_ = initiator_->params();
   initiator_.reset();
   fire(Event::ended);
 }

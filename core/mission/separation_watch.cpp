@@ -80,6 +80,21 @@ double turned_since(double radps, const VehicleState& from, const VehicleState& 
   return radps + share * (wrap_pi(to.course_rad - from.course_rad) / s - radps);
 }
 
+/// Moved on for each of those whose height it may not have, until it is free of all.
+template <class Known, class Beyond>
+double beyond_all(const Known& known, double height_m, const Beyond& beyond) {
+  for (bool moved = true; moved;) {
+    moved = false;
+    for (const auto& [id, other] : known) {
+      const std::optional<double> next_m = beyond(other, height_m);
+      if (!next_m) continue;
+      height_m = *next_m;
+      moved = true;
+    }
+  }
+  return height_m;
+}
+
 }  // namespace
 
 SeparationWatch::SeparationWatch(const coalition::ProtocolParams& params, VehicleId self,
@@ -209,16 +224,12 @@ double SeparationWatch::with_room_for_others(const Self& self) const {
     const bool is_behind = std::abs(behind_m) < kLevel_m ? id > self_ : behind_m > 0.0;
     ++(is_behind ? behind : before);
   }
-  double height_m = *self.height_m + side * behind * apart_m;
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const auto& [id, other] : known_) {
-      if (other.gives_way_too || std::abs(other.state.z_m - height_m) >= apart_m - kLevel_m)
-        continue;
-      height_m = other.state.z_m + side * apart_m;
-      moved = true;
-    }
-  }
+  const auto beyond = [&](const Other& other, double at_m) -> std::optional<double> {
+    if (other.gives_way_too || std::abs(other.state.z_m - at_m) >= apart_m - kLevel_m)
+      return std::nullopt;
+    return other.state.z_m + side * apart_m;
+  };
+  double height_m = beyond_all(known_, *self.height_m + side * behind * apart_m, beyond);
   const double end_m = side > 0.0 ? high_m : low_m;
   // Without room for all of them they stand in their order at its end.
   if (side * (height_m - end_m) > 0.0) height_m = end_m - side * before * apart_m;
@@ -234,7 +245,7 @@ bool SeparationWatch::may_come(const Self& self, const Other& other, double with
   return apart.norm() < params_.separation_horizontal_m + within_s * speed_mps;
 }
 
-bool SeparationWatch::may_pass(const Self& self, const Other& other, Instant now) const {
+bool SeparationWatch::may_be_near(const Self& self, const Other& other, Instant now) const {
   if (passes_near(approach(self, other, now))) return true;
   // Others may circle near by for good.
   const bool is_patient = !climbs_back_ || now < climbs_since_ + kPatientFor;
@@ -243,18 +254,13 @@ bool SeparationWatch::may_pass(const Self& self, const Other& other, Instant now
 
 /// Who came down through the heights of others does not wait in one of them.
 double SeparationWatch::below_all(const Self& self, double height_m, Instant now) const {
-  const double apart_m = params_.separation_vertical_m + kRoom_m;
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const auto& [id, other] : known_) {
-      const double off_m = std::abs(other.state.z_m - height_m);
-      if (off_m >= params_.separation_vertical_m + kClearHeight_m || !may_pass(self, other, now))
-        continue;
-      height_m = other.state.z_m - apart_m;
-      moved = true;
-    }
-  }
-  return std::max(height_m, params_.separation_floor_m);
+  const double within_m = params_.separation_vertical_m + kClearHeight_m;
+  const auto below = [&](const Other& other, double at_m) -> std::optional<double> {
+    const bool is_off = std::abs(other.state.z_m - at_m) >= within_m;
+    if (is_off || !may_be_near(self, other, now)) return std::nullopt;
+    return other.state.z_m - params_.separation_vertical_m - kRoom_m;
+  };
+  return std::max(beyond_all(known_, height_m, below), params_.separation_floor_m);
 }
 
 /// To where it is to fly, as far as nobody passes near on the way: where it comes down, or back up,
@@ -276,7 +282,7 @@ void SeparationWatch::go_on(const Self& self, Instant now) {
     const double ahead_m = side * (other.state.z_m - from_m);
     const double beyond_m = side * (other.state.z_m - base_m_);
     if (ahead_m < 0.0 || beyond_m >= apart_m) continue;
-    if (!may_pass(self, other, now)) continue;
+    if (!may_be_near(self, other, now)) continue;
     const double waits_m = other.state.z_m - side * apart_m;
     const double stop_m = side * (waits_m - from_m) < 0.0 && !climbs_back_ ? from_m : waits_m;
     if (side * (stop_m - way_m) < 0.0) way_m = stop_m;
@@ -343,13 +349,13 @@ void SeparationWatch::look_along_way(const Self& self, Instant now) {
   const Vec2 here = position_at(self.state, age_s);
   const double begin_m = self.way != nullptr ? self.way->distance_at(now) : 0.0;
   const Vec2 begin = self.way != nullptr ? self.way->pose_at(now).position() : Vec2{0.0, 0.0};
-  for (double s = 0.0; s <= to_seconds(params_.separation_look_ahead); s += kLandsStep_s) {
-    if (self.way == nullptr) {
-      own_ahead_.push_back(turned_at(self.state, turn_radps_, age_s + s));
-      continue;
-    }
+  const auto at = [&](double s) -> Vec2 {
+    if (self.way == nullptr) return turned_at(self.state, turn_radps_, age_s + s);
     const double flown_m = begin_m + s * self.state.groundspeed_mps;
-    own_ahead_.emplace_back(here + self.way->pose_at_distance(flown_m).position() - begin);
+    return here + self.way->pose_at_distance(flown_m).position() - begin;
+  };
+  for (double s = 0.0; s <= to_seconds(params_.separation_look_ahead); s += kLandsStep_s) {
+    own_ahead_.push_back(at(s));
   }
 }
 
@@ -507,17 +513,17 @@ std::optional<double> SeparationWatch::height_for(VehicleId id, const Other& oth
                                                   const Self& self, Instant now) const {
   // Who lands is not passed upwards, whatever its height will be by then.
   const bool lands = other.activity == Activity::landing;
-  const double its_m = lands ? other.state.z_m : approach(self, other, now).height_m;
-  const double above_m = self.state.z_m - its_m;
+  const Approach a = approach(self, other, now);
+  const double above_m = self.state.z_m - (lands ? other.state.z_m : a.height_m);
   const bool level = std::abs(above_m) < kLevel_m;
   const bool up = level ? self_ > id : above_m > 0.0;
   if (const auto away = free_height(other, up, self, now)) return away;
   const auto through = free_height(other, !up, self, now);
   // There is no room below, and it will have come past.
-  if (lands && through && self.state.z_m > approach(self, other, now).height_m) return through;
+  if (lands && through && self.state.z_m > a.height_m) return through;
   if (!through || level) return through;
   const double takes_s = std::abs(*through - self.state.z_m) / kHeightRate_mps + kClimbLag_s;
-  return takes_s < approach(self, other, now).in_s ? through : std::nullopt;
+  return takes_s < a.in_s ? through : std::nullopt;
 }
 
 /// The nearest height on that side of the other one at which nobody else passes near.
@@ -526,17 +532,13 @@ std::optional<double> SeparationWatch::free_height(const Other& other, bool up, 
   const double side = up ? 1.0 : -1.0;
   const double room_m = params_.separation_vertical_m + kRoom_m;
   const Approach a = approach(self, other, now);
-  double height_m = a.height_m + side * (room_m + a.around_m);
-  for (bool moved = true; moved;) {
-    moved = false;
-    for (const auto& [id, third] : known_) {
-      const Approach its = approach(self, third, now);
-      const double apart_m = params_.separation_vertical_m + its.around_m;
-      if (std::abs(its.height_m - height_m) >= apart_m || !passes_near(its)) continue;
-      height_m = its.height_m + side * (room_m + its.around_m);
-      moved = true;
-    }
-  }
+  const auto beyond = [&](const Other& third, double at_m) -> std::optional<double> {
+    const Approach its = approach(self, third, now);
+    const double apart_m = params_.separation_vertical_m + its.around_m;
+    if (std::abs(its.height_m - at_m) >= apart_m || !passes_near(its)) return std::nullopt;
+    return its.height_m + side * (room_m + its.around_m);
+  };
+  const double height_m = beyond_all(known_, a.height_m + side * (room_m + a.around_m), beyond);
   const bool allowed = up ? height_m <= std::min(params_.separation_ceiling_m, room_.high_m)
                           : height_m >= std::max(params_.separation_floor_m, room_.low_m);
   return allowed ? std::optional{height_m} : std::nullopt;

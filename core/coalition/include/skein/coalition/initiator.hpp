@@ -114,11 +114,9 @@ class Initiator {
   /// it knows to be done; where both stand or neither does, the smaller id goes on.
   void on_rival(const Round& rival, bool rival_stands, Instant now);
   void on_timeout(Instant now);
-  /// What the planner is given: as configured, or longer where it was late.
-  [[nodiscard]] Duration allocation_time() const { return params_.allocation_time; }
-  /// What a message is given: as configured, or longer where bids came after a round had failed.
-  [[nodiscard]] Duration message_delay() const { return params_.message_delay; }
-  [[nodiscard]] Duration formation_time() const { return params_.formation_time(); }
+  /// As configured, but for what it has learned: the planner is given longer where it was late,
+  /// messages where bids came too late in a round that failed.
+  [[nodiscard]] const ProtocolParams& params() const { return params_; }
 
   /// Also where they come too late: later rounds leave the planner half as long again as it took.
   void allocated(const Round& round, std::vector<TaskAssignment> assignments, Instant now);

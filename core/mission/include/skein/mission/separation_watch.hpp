@@ -167,7 +167,7 @@ class SeparationWatch {
   void keep_free(const Self& self, Instant now);
   void go_on(const Self& self, Instant now);
   [[nodiscard]] double with_room_for_others(const Self& self) const;
-  [[nodiscard]] bool may_pass(const Self& self, const Other& other, Instant now) const;
+  [[nodiscard]] bool may_be_near(const Self& self, const Other& other, Instant now) const;
   [[nodiscard]] double below_all(const Self& self, double height_m, Instant now) const;
   void look_along_way(const Self& self, Instant now);
   [[nodiscard]] const Vec2& own_at(double seconds) const;
