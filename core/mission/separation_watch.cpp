@@ -354,8 +354,9 @@ void SeparationWatch::look_along_way(const Self& self, Instant now) {
     const double flown_m = begin_m + s * self.state.groundspeed_mps;
     return here + self.way->pose_at_distance(flown_m).position() - begin;
   };
-  for (double s = 0.0; s <= to_seconds(params_.separation_look_ahead); s += kLandsStep_s) {
-    own_ahead_.push_back(at(s));
+  const double look_s = to_seconds(params_.separation_look_ahead);
+  for (int step = 0; step * kLandsStep_s <= look_s; ++step) {
+    own_ahead_.push_back(at(step * kLandsStep_s));
   }
 }
 
