@@ -216,16 +216,17 @@ TEST(Coalition, ATaskIsOverSinceItsEnd) {
   const TaskId flown{SiteId{1}, TaskKind::deliver, 0};
   const TaskId lost{SiteId{1}, TaskKind::deliver, 1};
   Participant participant{ProtocolParams{}, VehicleId{3}, InstanceId{1}};
-  EXPECT_EQ(participant.over_since(flown), std::nullopt);
+  EXPECT_FALSE(participant.over(flown));
   const Instant end = Instant{} + 20s;
   LeaseRenewal renewal;
   renewal.done = {flown};
   renewal.unknown = {lost};
   participant.on_lease_renewal(renewal, end + 4s);
-  EXPECT_EQ(participant.over_since(flown), end + 4s) << "no later than the leader's word";
-  EXPECT_EQ(participant.over_since(lost), Instant::min());
+  EXPECT_EQ(participant.over(flown)->since, end + 4s) << "no later than the leader's word";
+  EXPECT_EQ(participant.over(lost)->since, Instant::min());
   participant.on_status({Round{}, VehicleId{2}, {{flown, TaskState::done, end}}});
-  EXPECT_EQ(participant.over_since(flown), end);
+  EXPECT_EQ(participant.over(flown)->since, end);
+  EXPECT_TRUE(participant.over(flown)->told_by_owner);
 }
 
 TEST(Coalition, CloseReleasesEveryone) {

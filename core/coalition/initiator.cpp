@@ -282,12 +282,26 @@ void Initiator::on_rival(const Round& rival, bool rival_stands, Instant now) {
 /// Half of the electors have not been heard for so long that none of them can be at work under
 /// another leader: the next coalition that stands chooses its electors anew.
 void Initiator::start_anew(Instant now) {
-  const Instant until = authority_until();
-  if (until >= now) return;
-  Instant heard = until == Instant::min() ? announcement_.formed_at : until;
-  if (now < heard + params_.cut_max) return;
+  if (authority_until() >= now || now < starts_anew_at()) return;
   electors_.clear();
   promised_until_ = Instant::max();
+}
+
+Instant Initiator::starts_anew_at() const {
+  const Instant until = authority_until();
+  if (until == Instant::max()) return until;
+  return (until == Instant::min() ? announcement_.formed_at : until) + params_.cut_max;
+}
+
+/// Whose support a successor has not settled yet may be chosen by any of the lost leader's
+/// electors.
+Initiator::Electorate Initiator::electorate() const {
+  const bool settled = promised_until_ == Instant::max();
+  Electorate all{{}, settled ? electors_.size() / 2 + 1 : 1, authority_until(), starts_anew_at()};
+  for (const auto& [vehicle, elector] : electors_) {
+    if (vehicle != announcement_.round.coalition.leader) all.others.push_back(vehicle);
+  }
+  return all;
 }
 
 void Initiator::allocation_failed(const Round& round, const std::string& detail, Instant now) {

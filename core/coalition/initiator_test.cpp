@@ -139,6 +139,25 @@ TEST(Initiator, KnowsWhatMayBeHeldAfterItIsClosed) {
 }
 
 /// A renewal reaches as far as half of the electors have promised, and no further.
+/// Two of three choose another leader where they have not heard that this one is closed; one does
+/// not.
+TEST(Initiator, KnowsWhoMayChooseAnotherLeaderAfterItIsClosed) {
+  Leader pair{1};
+  pair.stands({kFirst});
+  EXPECT_FALSE(pair.self.electorate().may_choose());
+  Leader leader{2};
+  EXPECT_FALSE(leader.self.electorate().may_choose()) << "nobody follows it yet";
+  leader.stands({kFirst, kSecond});
+  const Instant heard = leader.renews().sent_at;
+  leader.hears_allegiance(kFirst, heard);
+  leader.self.close({Reason::held_by_operator}, leader.now);
+  const auto electorate = leader.self.electorate();
+  EXPECT_TRUE(electorate.may_choose());
+  EXPECT_EQ(electorate.others, (std::vector{kFirst, kSecond}));
+  EXPECT_EQ(electorate.promised_until, heard + leader.params.lease);
+  EXPECT_EQ(electorate.until, electorate.promised_until + leader.params.cut_max);
+}
+
 TEST(Initiator, LeasesNoFurtherThanItsElectorsPromise) {
   Leader leader{2};
   leader.stands({kFirst, kSecond});

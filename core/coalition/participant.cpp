@@ -149,17 +149,19 @@ void Participant::on_cancel(const Cancel& message, Instant now) {
   // The operator may withdraw a site, or take a grant back, until a delivery has begun: that one is
   // not broken off.
   if (is_by_operator(message.why.reason) && delivery_in_progress()) return finish_alone();
-  // The leader counts on what it was told has begun.
+  // The leader counts on what it was told has begun; and one that leads the site again later, on
+  // all that it does not know to be given up.
+  const bool is_led_again = message.why.reason == Reason::held_by_operator;
   for (const auto& lease : leases_) {
-    if (lease.state == TaskState::started) give_up(lease, now);
+    if (is_led_again || lease.state == TaskState::started) give_up(lease, now);
   }
   leave(Event::released, message.why);
 }
 
 void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
   elector_.on_lease_renewal(message, now);
-  for (const auto& task : message.done) note_over(task, now);
-  for (const auto& task : message.unknown) note_over(task, Instant::min());
+  for (const auto& task : message.done) note_over({task, now, false});
+  for (const auto& task : message.unknown) note_over({task, Instant::min(), false});
   for (auto& f : finished_) {
     const bool concerned =
         f.entry.state == TaskState::done || f.round.coalition == message.round.coalition;
@@ -239,25 +241,28 @@ void Participant::give_up(const Lease& lease, Instant now) {
 void Participant::on_status(const MemberStatus& message) {
   elector_.on_status(message);
   for (const auto& entry : message.tasks) {
-    if (entry.state == TaskState::done) note_over(entry.task, entry.time);
+    if (entry.state == TaskState::done) note_over({entry.task, entry.time, true});
   }
 }
 
-void Participant::note_over(const TaskId& task, Instant since) {
-  const auto known =
-      std::find_if(over_.begin(), over_.end(), [&](const Over& over) { return over.task == task; });
+/// Who flew it knows when best, and of two words the earlier one counts.
+void Participant::note_over(const Over& over) {
+  const auto known = std::ranges::find(over_, over.task, &Over::task);
   if (known != over_.end()) {
-    known->since = std::min(known->since, since);
+    if (known->told_by_owner == over.told_by_owner) {
+      known->since = std::min(known->since, over.since);
+    } else if (over.told_by_owner) {
+      *known = over;
+    }
     return;
   }
-  over_.push_back({task, since});
+  over_.push_back(over);
   if (over_.size() > kOverMax) over_.erase(over_.begin());
 }
 
-std::optional<Instant> Participant::over_since(const TaskId& task) const {
-  const auto known =
-      std::find_if(over_.begin(), over_.end(), [&](const Over& over) { return over.task == task; });
-  return known == over_.end() ? std::nullopt : std::optional{known->since};
+std::optional<Participant::Over> Participant::over(const TaskId& task) const {
+  const auto known = std::ranges::find(over_, task, &Over::task);
+  return known == over_.end() ? std::nullopt : std::optional{*known};
 }
 
 void Participant::on_claim(const LeadershipClaim& message, Instant now) {

@@ -99,16 +99,37 @@ TEST(Participant, WhatAnotherLeaderTakesForFlownPerhapsIsNotOverWhereItsOwnDoesN
   other.round.coalition.leader = VehicleId{9};
   other.unknown = {delivery};
   m.self.on_lease_renewal(other, m.now);
-  EXPECT_TRUE(m.self.over_since(delivery));
+  EXPECT_TRUE(m.self.over(delivery));
   LeaseRenewal own = m.renewal(1, m.now + 1s);
   own.site = kTask.site;
   own.unknown = {delivery};
   m.self.on_lease_renewal(own, m.now + 1s);
-  EXPECT_TRUE(m.self.over_since(delivery)) << "its own leader takes it so, too";
+  EXPECT_TRUE(m.self.over(delivery)) << "its own leader takes it so, too";
   own = m.renewal(1, m.now + 2s);
   own.site = kTask.site;
   m.self.on_lease_renewal(own, m.now + 2s);
-  EXPECT_FALSE(m.self.over_since(delivery));
+  EXPECT_FALSE(m.self.over(delivery));
+}
+
+/// So it knows soon that nobody holds what it awarded.
+TEST(Participant, TellsALeaderThatLeadsAgainLaterWhatItHasGivenUp) {
+  for (const Reason why : {Reason::held_by_operator, Reason::site_withdrawn}) {
+    Member m;
+    m.is_member_of(1);
+    while (m.self.poll_message()) {
+    }
+    m.self.on_cancel({m.call.round, {why}}, m.now);
+    m.now += m.params.heartbeat;
+    m.self.on_timeout(m.now);
+    std::optional<TaskState> told;
+    while (const auto message = m.self.poll_message()) {
+      if (const auto* status = std::get_if<MemberStatus>(&*message)) {
+        told = status->tasks.front().state;
+      }
+    }
+    const bool is_led_again = why == Reason::held_by_operator;
+    EXPECT_EQ(told, is_led_again ? std::optional{TaskState::failed} : std::nullopt);
+  }
 }
 
 TEST(Participant, AnAwardThatComesAfterItsLeaseIsNone) {

@@ -88,8 +88,8 @@ Vec2 Leader::position_at_formation(Instant now) const {
   return ownship_.flight().pose_at(formed_at).position();
 }
 
-std::optional<Site> Leader::on_message(const coalition::Message& message, Instant now) {
-  std::optional<Site> put_off;
+std::optional<PutOffSite> Leader::on_message(const coalition::Message& message, Instant now) {
+  std::optional<PutOffSite> gives_way;
   std::visit(
       Overloaded{[&](const coalition::Announcement& m) {
                    for (auto& farewell : farewells_) {
@@ -101,8 +101,7 @@ std::optional<Site> Leader::on_message(const coalition::Message& message, Instan
                    outbox_.report(
                        event::ConflictYielded{m.round.coalition.leader, own.reward, false},
                        own.round, about_site(), now);
-                   put_off = own.site;
-                   give_up({Reason::yields}, now);
+                   gives_way = put_off(Reason::yields, now);
                  },
                  [&](const coalition::Award& m) { meet_rival(m.site.id, m.round, true, now); },
                  [&](const coalition::LeaseRenewal& m) {
@@ -126,7 +125,7 @@ std::optional<Site> Leader::on_message(const coalition::Message& message, Instan
                  },
                  [](const coalition::Cancel&) {}, [](const coalition::LeadershipClaim&) {}},
       message);
-  return put_off;
+  return gives_way;
 }
 
 void Leader::meet_rival(SiteId site, const coalition::Round& rival, bool stands, Instant now) {
@@ -155,9 +154,9 @@ bool Leader::in_vain() const {
   return monitoring() && initiator_->owned().empty() && rounds_failed_ > kRoundsForAll;
 }
 
-std::optional<Leader::PutOff> Leader::put_off(Reason why, Instant now) {
+std::optional<PutOffSite> Leader::put_off(Reason why, Instant now) {
   if (!leading()) return std::nullopt;
-  PutOff what{initiator_->site(), initiator_->outstanding()};
+  PutOffSite what{initiator_->site(), initiator_->outstanding(), initiator_->electorate()};
   give_up({why}, now);
   return what;
 }

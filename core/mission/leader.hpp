@@ -57,9 +57,10 @@ class Leader {
   /// It goes on with the plan of a leader that is lost, unless it leads already.
   void take_over(const coalition::Participant::LeadershipWon& won, Instant now);
 
-  /// Its own messages and those of others. The site that it led, where it gives way to the leader
-  /// of another one: to be led later.
-  [[nodiscard]] std::optional<Site> on_message(const coalition::Message& message, Instant now);
+  /// Its own messages and those of others. What it led, where it gives way to the leader of another
+  /// site.
+  [[nodiscard]] std::optional<PutOffSite> on_message(const coalition::Message& message,
+                                                     Instant now);
   void on_authorisation(const Authorisation& message, Instant now);
   /// False where it is not of the round being led.
   bool on_planning_result(const PlanningResult& result, Instant now);
@@ -70,12 +71,7 @@ class Leader {
   /// Nobody owns a task of its site, and its last rounds found nobody for any: it may do better
   /// elsewhere meanwhile.
   [[nodiscard]] bool in_vain() const;
-  /// Gives the site up for now: it is to be led later.
-  struct PutOff {
-    Site site;
-    std::vector<coalition::Initiator::Outstanding> outstanding;
-  };
-  [[nodiscard]] std::optional<PutOff> put_off(coalition::Reason why, Instant now);
+  [[nodiscard]] std::optional<PutOffSite> put_off(coalition::Reason why, Instant now);
   /// For one that cannot go on: gives the site up as soon as nobody flies what it awarded. Then its
   /// silence tells the others to take the site up.
   void hand_on(coalition::Reason why, Instant now);

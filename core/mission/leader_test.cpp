@@ -284,7 +284,7 @@ TEST(Leader, YieldsToALargerRewardAndLeadsItsSiteLater) {
   other.reward = 100.0;
   const auto own = l.leader.on_message(coalition::Message{other}, l.now);
   ASSERT_TRUE(own);
-  EXPECT_EQ(own->id, SiteId{1});
+  EXPECT_EQ(own->site.id, SiteId{1});
   EXPECT_EQ(l.leader.state(), State::idle);
   EXPECT_EQ(l.reported(EventKind::conflict_yielded), 1);
 }
@@ -318,7 +318,7 @@ TEST(Leader, WhoseRoundsAreInVainYieldsToWhoseWorkItCanDo) {
   }
   const auto own = l.leader.on_message(call_of_another(), l.now);
   ASSERT_TRUE(own);
-  EXPECT_EQ(own->id, SiteId{1});
+  EXPECT_EQ(own->site.id, SiteId{1});
   EXPECT_EQ(l.leader.state(), State::idle);
 }
 

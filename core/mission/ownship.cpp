@@ -200,11 +200,15 @@ bool Ownship::keeps_clear(Instant now) {
   return flight_.keeps_clear(hazards(), now) || plans_anew(now);
 }
 
-bool Ownship::way_is_open(Instant now) const {
+bool Ownship::way_is_open(Instant now, std::optional<HazardId> news) const {
   const auto& timed = flight_.plan().timed;
   const double ahead = timed.distance_at(now);
   const auto rest = timed.piece(ahead, std::max(ahead, timed.path.length_m()));
-  return rest && planning::is_clear(*rest, hazards()) && flight_.misses(rest->end(), hazards());
+  std::vector<Hazard> circles = hazards();
+  for (Hazard& circle : circles) {
+    if (config_.heeds_wind && circle.id == news) circle.radius_m += kFlownOff_m;
+  }
+  return rest && planning::is_clear(*rest, circles) && flight_.misses(rest->end(), hazards());
 }
 
 bool Ownship::stays_in_fence(const Path& way, double orbit_curvature_per_m) const {

@@ -106,8 +106,9 @@ class Ownship {
   /// anew?
   [[nodiscard]] bool keeps_clear(Instant now);
   /// What is left of the plan, its orbit excepted, touches no hazard, though it may come near; nor
-  /// need what comes after it.
-  [[nodiscard]] bool way_is_open(Instant now) const;
+  /// need what comes after it. Of one that has just become known it keeps as far as it may be flown
+  /// off in wind: what was planned around the others has that room.
+  [[nodiscard]] bool way_is_open(Instant now, std::optional<HazardId> news = {}) const;
   /// Keeps that fence from now on. False, and nothing changed, where its home is outside.
   bool keep_fence(const Fence& fence);
   /// What it flies stays in its fence, if need be after a search or a way home was planned anew?

@@ -72,6 +72,25 @@ TEST(Ownship, AWayThatEndsWhereNoTurnMissesAHazardIsNotOpen) {
   }
 }
 
+/// Gusts take it some metres off.
+TEST(Ownship, InWindAWayIsNotOpenBesideAHazardThatHasJustBecomeKnown) {
+  for (const bool heeds_wind : {false, true}) {
+    VehicleAgentConfig config = plane_config();
+    config.heeds_wind = heeds_wind;
+    PartsBench bench{config};
+    const Instant at = bench.now + std::chrono::seconds{2};
+    Path way{bench.ownship.flight().pose_at(at), {}};
+    ASSERT_TRUE(way.append(Segment{0.0, 500.0}));
+    ASSERT_TRUE(bench.ownship.flight().continue_with(at, way, 0.01, bench.now));
+    const Pose2 middle = way.pose_at(250.0);
+    const HazardId id{1};
+    const Vec2 centre = middle.position() + 53.0 * unit_vector(middle.heading_rad + kPi / 2.0);
+    ASSERT_TRUE(bench.ownship.on_hazard({{id, centre, 50.0}}));
+    EXPECT_TRUE(bench.ownship.way_is_open(bench.now));
+    EXPECT_EQ(bench.ownship.way_is_open(bench.now, id), !heeds_wind);
+  }
+}
+
 /// Whatever it orbits for: what it began with is some way off its circle in another wind.
 TEST(Ownship, PlansAnewInAnotherWindWhatNobodyCountsWith) {
   VehicleAgentConfig config = plane_config();

@@ -58,7 +58,7 @@ bool Scout::withdraw(SiteId site, bool turns_away, Instant now) {
   known_.insert(site);
   sites_.forget(site);
   std::erase_if(found_, [site](const Found& f) { return f.site.id == site; });
-  std::erase_if(surveyed_, [site](const Surveyed& s) { return s.site.id == site; });
+  std::erase_if(surveyed_, [site](const Surveyed& s) { return s.site() == site; });
   if (flying() && site_.id == site) {
     fire(Event::called_off);
     if (turns_away) ownship_.search(now);
@@ -70,7 +70,7 @@ void Scout::on_message(const coalition::Message& message, Instant now) {
   // Its own words come back from the ground station, which passes them on.
   const auto is_led = [this](SiteId site, VehicleId leader) {
     if (leader == ownship_.spec().id) return;
-    std::erase_if(surveyed_, [site](const Surveyed& s) { return s.site.id == site; });
+    std::erase_if(surveyed_, [site](const Surveyed& s) { return s.site() == site; });
   };
   // Who says that it was heard later than now would never be lost.
   const Instant latest = now + ownship_.config().protocol.clock_guard;
@@ -90,17 +90,25 @@ void Scout::on_message(const coalition::Message& message, Instant now) {
   }
 }
 
-/// Whose task has ended, by its own word, holds it no more.
+/// Whose task has ended, by its own word, holds it no more; and who has left the coalition with its
+/// last one, before another leader could be chosen, chooses none.
 void Scout::on_status(const coalition::MemberStatus& status) {
   using coalition::TaskState;
   for (Surveyed& surveyed : surveyed_) {
-    std::erase_if(surveyed.outstanding, [&status](const Outstanding& held) {
+    auto& [site, outstanding, electorate] = surveyed.put_off;
+    const auto ended = [&status](const coalition::Initiator::Outstanding& held) {
       return held.owner == status.member && held.round == status.round &&
              std::ranges::any_of(status.tasks, [&held](const coalition::TaskStatus& task) {
                return task.task == held.task && task.state != TaskState::planned &&
                       task.state != TaskState::started;
              });
-    });
+    };
+    if (std::erase_if(outstanding, ended) == 0) continue;
+    const bool holds_more = std::ranges::any_of(
+        outstanding, [&status](const auto& held) { return held.owner == status.member; });
+    const bool in_time = std::ranges::all_of(
+        status.tasks, [&](const auto& task) { return task.time < electorate.promised_until; });
+    if (!holds_more && in_time) std::erase(electorate.others, status.member);
   }
 }
 
@@ -118,10 +126,10 @@ std::optional<SurveyedSite> Scout::take_up(Instant now) {
 }
 
 SurveyedSite Scout::lead(std::vector<Surveyed>::iterator next, Instant now) {
-  const Surveyed surveyed = std::move(*next);
+  const PutOffSite put_off = std::move(next->put_off);
   surveyed_.erase(next);
-  SurveyedSite what{surveyed.site, sites_.over(surveyed.site.id)};
-  for (const Outstanding& held : surveyed.outstanding) {
+  SurveyedSite what{put_off.site, sites_.over(put_off.site.id)};
+  for (const auto& held : put_off.outstanding) {
     if (!held.maybe_flown || contains(what.over, held.task)) continue;
     outbox_.report(event::TaskUnknown{held.owner}, held.round, held.task, now);
     what.over.push_back(held.task);
@@ -130,14 +138,15 @@ SurveyedSite Scout::lead(std::vector<Surveyed>::iterator next, Instant now) {
 }
 
 Instant Scout::Surveyed::may_be_led_at() const {
-  Instant at = Instant::min();
-  for (const Outstanding& held : outstanding) at = std::max(at, held.until);
+  const auto& electorate = put_off.electorate;
+  Instant at = electorate.may_choose() ? electorate.until : Instant::min();
+  for (const auto& held : put_off.outstanding) at = std::max(at, held.until);
   return at;
 }
 
-void Scout::put_off(const Site& site, const std::vector<Outstanding>& outstanding) {
+void Scout::put_off(PutOffSite site) {
   surveyed_.insert(std::ranges::find_if(surveyed_, &Surveyed::in_vain),
-                   Surveyed{site, false, outstanding});
+                   Surveyed{std::move(site), false});
 }
 
 bool Scout::has_another_site() const {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -61,12 +62,11 @@ class Scout {
   void on_message(const coalition::Message& message, Instant now);
   /// Nobody shall lead it any more.
   void close(SiteId site) { sites_.close(site); }
-  /// A surveyed site that was led here shall be led later, and not before what was awarded then is
-  /// over: who holds it may not have heard that it is led no more.
-  using Outstanding = coalition::Initiator::Outstanding;
-  void put_off(const Site& site, const std::vector<Outstanding>& outstanding);
-  /// So shall one that was led in vain, after all else that waits here.
-  void put_last(const Site& site) { surveyed_.push_back({site, true, {}}); }
+  /// Not before what was awarded then is over, nor while somebody else may have been chosen to lead
+  /// it: who holds it may not have heard that it is led no more.
+  void put_off(PutOffSite site);
+  /// So with one that was led in vain, after all else that waits here.
+  void put_last(PutOffSite site) { surveyed_.push_back({std::move(site), true}); }
   /// Does anything wait here that can be surveyed or led?
   [[nodiscard]] bool has_another_site() const;
 
@@ -102,10 +102,10 @@ class Scout {
     bool told = false;  ///< that it cannot be surveyed now
   };
   struct Surveyed {
-    Site site;
+    PutOffSite put_off;
     bool in_vain = false;  ///< it was led
-    std::vector<Outstanding> outstanding;
 
+    [[nodiscard]] SiteId site() const { return put_off.site.id; }
     [[nodiscard]] Instant may_be_led_at() const;
   };
   void fire(Event event);

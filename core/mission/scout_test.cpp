@@ -356,8 +356,8 @@ TEST(Scout, LeadsNothingBeforeWhatItBidForIsDecided) {
 TEST(Scout, WhatWasLedInVainComesAfterAllElse) {
   Scouting s;
   EXPECT_FALSE(s.scout.has_another_site());
-  s.scout.put_last(test_site(1));
-  s.scout.put_off(test_site(2), {});
+  s.scout.put_last({test_site(1), {}, {}});
+  s.scout.put_off({test_site(2), {}, {}});
   s.find(test_site(3));
   EXPECT_TRUE(s.scout.has_another_site());
   const auto first = s.scout.take_up(s.now);
@@ -373,8 +373,8 @@ TEST(Scout, WhatWasLedInVainComesAfterAllElse) {
 
 TEST(Scout, ASiteThatWasPutOffIsLedLaterUnlessOthersDo) {
   Scouting s;
-  s.scout.put_off(test_site(1), {});
-  s.scout.put_off(test_site(2), {});
+  s.scout.put_off({test_site(1), {}, {}});
+  s.scout.put_off({test_site(2), {}, {}});
   s.is_announced(test_site(1));
   // The ground station passes on what the vehicle itself has said before.
   s.is_announced(test_site(2), s.ownship.spec().id);
@@ -392,8 +392,10 @@ TEST(Scout, ASiteThatWasPutOffIsLedWhenNobodyHoldsItsTasksAnyMore) {
   const TaskId second{SiteId{1}, TaskKind::deliver, 1};
   Scouting s;
   const Instant until = s.now + std::chrono::seconds{14};
-  s.scout.put_off(test_site(1), {{first, VehicleId{7}, round, until, true},
-                                 {second, VehicleId{8}, round, until, true}});
+  s.scout.put_off(
+      {test_site(1),
+       {{first, VehicleId{7}, round, until, true}, {second, VehicleId{8}, round, until, true}},
+       {}});
   EXPECT_FALSE(s.scout.take_up(s.now));
   EXPECT_LE(s.scout.takes_up_at(), until);
   coalition::MemberStatus status;
@@ -407,10 +409,37 @@ TEST(Scout, ASiteThatWasPutOffIsLedWhenNobodyHoldsItsTasksAnyMore) {
   EXPECT_THAT(site->over, testing::ElementsAre(first)) << "the other has said that it has not";
   EXPECT_EQ(s.reported(EventKind::task_unknown), 1);
 
-  s.scout.put_off(test_site(1),
-                  {{second, VehicleId{8}, round, until + std::chrono::seconds{1}, false}});
+  s.scout.put_off(
+      {test_site(1), {{second, VehicleId{8}, round, until + std::chrono::seconds{1}, false}}, {}});
   s.scout.on_message(coalition::Message{status}, s.now);
   EXPECT_TRUE(s.scout.take_up(until)) << "nobody holds it, by its word";
+}
+
+/// Two of three who have not heard that their leader was held may have chosen another one, unless
+/// one of them has left before they could.
+TEST(Scout, ASiteThatWasPutOffIsLedWhenNobodyCanHaveBeenChosenToLeadIt) {
+  const coalition::Round round{{{4}, {1}, 1}, 1};
+  const TaskId first{SiteId{1}, TaskKind::deliver, 0};
+  const TaskId second{SiteId{1}, TaskKind::deliver, 1};
+  using namespace std::chrono_literals;
+  for (const Duration left_after : {0s, 12s, 100s}) {
+    Scouting s;
+    const Instant promised = s.now + 10s;
+    const Instant leases_end = s.now + 14s;
+    const Instant until = promised + 60s;
+    s.scout.put_off({test_site(1),
+                     {{first, VehicleId{7}, round, leases_end, false},
+                      {second, VehicleId{8}, round, leases_end, false}},
+                     {{VehicleId{7}, VehicleId{8}}, 2, promised, until}});
+    if (left_after < 100s) {
+      coalition::MemberStatus status{round, VehicleId{8}, {}};
+      status.tasks = {{second, coalition::TaskState::failed, s.now + left_after}};
+      s.scout.on_message(coalition::Message{status}, s.now + left_after);
+    }
+    const Instant led_at = left_after == 0s ? leases_end : until;
+    EXPECT_FALSE(s.scout.take_up(led_at - 1ms));
+    EXPECT_TRUE(s.scout.take_up(led_at));
+  }
 }
 
 }  // namespace

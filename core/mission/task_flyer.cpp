@@ -25,6 +25,8 @@ constexpr double kStraight_m = 1.0;  ///< more of a plan than that behind the si
 /// Before its end a run is looked at once more, whether it is late.
 constexpr Duration kLooksAhead = std::chrono::seconds{1};
 constexpr Duration kNewsMayTake = std::chrono::milliseconds{500};
+/// Of a plan and the times that it was given.
+constexpr Duration kTimesAgree = std::chrono::milliseconds{20};
 constexpr Duration kTimePeriod = std::chrono::seconds{1};  ///< between two looks at a task's time
 /// That it has not bid is told for so long.
 constexpr Duration kDeclinedFor = std::chrono::seconds{60};
@@ -457,8 +459,10 @@ bool TaskFlyer::deliveries_over() const {
   const Site& site = task_->site;
   for (std::size_t i = 0; i < site.deliveries.size(); ++i) {
     const TaskId delivery{site.id, TaskKind::deliver, static_cast<std::uint8_t>(i)};
-    const auto since = participant_.over_since(delivery);
-    if (!since || *since > task_->begin_time() + kNewsMayTake - site.assess_wait) return false;
+    const auto over = participant_.over(delivery);
+    if (!over) return false;
+    const Duration room = over->told_by_owner ? kTimesAgree : kNewsMayTake;
+    if (over->since > task_->begin_time() + room - site.assess_wait) return false;
   }
   return true;
 }

@@ -141,7 +141,7 @@ void VehicleAgent::Impl::receive(const coalition::Message& message, Instant now)
   scout_.on_message(message, now);
   const auto* call = std::get_if<coalition::Announcement>(&message);
   if (call == nullptr || !scout_.is_withdrawn(call->site.id)) relay_.on_message(message, now);
-  if (const auto site = leader_.on_message(message, now)) scout_.put_off(*site, {});
+  if (auto site = leader_.on_message(message, now)) scout_.put_off(*std::move(site));
   say_last_words(now);  // before its own member bids for the leader that it gives way to
   flyer_.on_message(message, now);
 }
@@ -201,8 +201,8 @@ void VehicleAgent::Impl::idle(Instant now) {
     return;
   }
   if (failsafe_.in(Failsafe::Action::none) && leader_.in_vain() && scout_.has_another_site()) {
-    if (const auto what = leader_.put_off(coalition::Reason::yields, now)) {
-      scout_.put_last(what->site);
+    if (auto site = leader_.put_off(coalition::Reason::yields, now)) {
+      scout_.put_last(*std::move(site));
     }
     say_last_words(now);
   }

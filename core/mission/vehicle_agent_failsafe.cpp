@@ -200,7 +200,7 @@ void VehicleAgent::Impl::on_hazard(const HazardReport& told, Instant now) {
   if (flyer_.detour(hazard.id, now)) return;
   // A task, a survey or a route is flown on where the hazard is near but does not bar the way.
   const bool bound = flyer_.flying() || scout_.flying() || ownship_.flight().en_route(now);
-  if (bound && ownship_.way_is_open(now) && flyer_.run_is_open()) {
+  if (bound && ownship_.way_is_open(now, hazard.id) && flyer_.run_is_open()) {
     ownship_.flight().set_orbit_barred();
     return;
   }
@@ -255,8 +255,8 @@ void VehicleAgent::Impl::watch_fence(Instant now) {
 void VehicleAgent::Impl::respond(const Failsafe::Response& response, Instant now) {
   if (response.withdraws != coalition::Reason::none) flyer_.withdraw(response.withdraws, now);
   if (response.lead == Failsafe::Lead::put_off) {
-    if (const auto what = leader_.put_off(coalition::Reason::held_by_operator, now))
-      scout_.put_off(what->site, what->outstanding);
+    if (auto site = leader_.put_off(coalition::Reason::held_by_operator, now))
+      scout_.put_off(*std::move(site));
   }
   if (response.ends_scouting) scout_.call_off();
   pump(now);

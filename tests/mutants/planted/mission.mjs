@@ -52,8 +52,16 @@ export default [
     slip: 'the wait after the last delivery is added where it is to be taken off',
     promise: 'assessments wait until the site may be assessed',
     file: flyer,
-    from: 'if (!since || *since > task_->begin_time() + kNewsMayTake - site.assess_wait) return false;',
-    to: 'if (!since || *since > task_->begin_time() + kNewsMayTake + site.assess_wait) return false;',
+    from: 'if (over->since > task_->begin_time() + room - site.assess_wait) return false;',
+    to: 'if (over->since > task_->begin_time() + room + site.assess_wait) return false;',
+  },
+  {
+    name: 'leads-beside-its-successor',
+    slip: 'who was held leads its site again as soon as its leases are over, whoever may have been chosen meanwhile',
+    promise: 'no task is awarded to two vehicles at once',
+    file: 'core/mission/scout.cpp',
+    from: 'electorate.may_choose() ? electorate.until : Instant::min()',
+    to: 'electorate.may_choose() ? Instant{} : Instant::min()',
   },
   {
     name: 'load-used-twice',

@@ -155,6 +155,16 @@ class Initiator {
     bool maybe_flown = false;  ///< by then
   };
   [[nodiscard]] std::vector<Outstanding> outstanding() const;
+  /// Who may choose another leader after this one has gone, and not have heard that it has.
+  struct Electorate {
+    std::vector<VehicleId> others;  ///< than this leader
+    std::size_t majority = 0;       ///< as many of them as choose one
+    Instant promised_until{};       ///< so long too few of them can
+    Instant until{};                ///< none of them can be at work under another any more
+
+    [[nodiscard]] bool may_choose() const { return majority > 0 && others.size() >= majority; }
+  };
+  [[nodiscard]] Electorate electorate() const;
   /// The tasks that others still own in this round, with their times.
   [[nodiscard]] std::vector<TaskAssignment> owned() const;
   [[nodiscard]] Tally tally() const {
@@ -189,6 +199,7 @@ class Initiator {
   void found(Instant now);
   [[nodiscard]] Instant authority_until() const;
   [[nodiscard]] bool has_authority(Instant now) const { return authority_until() > now; }
+  [[nodiscard]] Instant starts_anew_at() const;
   void collect_open_tasks(Instant now);
   void close_bids(Instant now);
   void take_back(Entry& entry, const Bid& bid, Instant now);

@@ -131,9 +131,15 @@ class Participant {
   [[nodiscard]] const Round& round() const { return round_; }
   /// Is a lease on the task held at `now`, and does it last until `until`?
   [[nodiscard]] bool holds(const TaskId& task, Instant now, Instant until) const;
-  /// Since when the task is over, if anybody has said that: its end as who flew it told it, else
-  /// when the leader's word came; Instant::min() for one that may have been flown at any time.
-  [[nodiscard]] std::optional<Instant> over_since(const TaskId& task) const;
+  struct Over {
+    TaskId task;
+    /// Its end as who flew it told it, else when the leader's word came; Instant::min() for one
+    /// that may have been flown at any time.
+    Instant since{};
+    bool told_by_owner = false;
+  };
+  /// What is known of a task that is over; nothing where nobody has said that it is.
+  [[nodiscard]] std::optional<Over> over(const TaskId& task) const;
   [[nodiscard]] Tally tally() const {
     return {machine_.protocol_errors(), bad_messages_ + elector_.bad_messages(),
             messages_.dropped() + outputs_.dropped() + elector_.dropped()};
@@ -145,10 +151,6 @@ class Participant {
     TaskState state = TaskState::planned;
     Instant until{};
   };
-  struct Over {
-    TaskId task;
-    Instant since{};
-  };
   struct Finished {
     Round round;
     TaskStatus entry;
@@ -158,7 +160,7 @@ class Participant {
   void end_leases(const Why& why, bool unstarted_only);
   void leave(Event event, const Why& why);
   void expire_leases(Instant now);
-  void note_over(const TaskId& task, Instant since);
+  void note_over(const Over& over);
   void give_up(const Lease& lease, Instant now);
   void send_status(Instant now);
   [[nodiscard]] std::vector<TaskAssignment> awarded_in(const Award& award) const;
