@@ -57,6 +57,7 @@ void GroundAgent::recall(const Message& message, VehicleId sender, Instant at) {
 
 void GroundAgent::recall_own(const Message& message, Instant at) {
   if (const auto* decision = std::get_if<Authorisation>(&message)) {
+    if (decision->granted) note_grant(*decision);
     for (PendingAuthorisation& pending : pending_) {
       const bool of_it =
           pending.request.site == decision->site && pending.request.round == decision->round;
@@ -504,13 +505,23 @@ void GroundAgent::take(PendingAuthorisation& pending, const Authorisation& decis
     led_[request.site].announcement.reset();
     std::erase_if(granted_, [&](const auto& g) { return g.first.site == request.site; });
   }
-  for (const auto& delivery : request.deliveries) {
-    if (!decision.granted) break;
-    granted_.insert_or_assign(
-        delivery.assignment.task,
-        Granted{request.round, delivery.assignment, delivery.bearing_rad, decision.decided_at});
-  }
+  if (decision.granted) note_grant(request.round, request.deliveries, decision.decided_at);
   pending.decision = decision;
+}
+
+void GroundAgent::note_grant(const Authorisation& grant) {
+  note_grant(grant.round, grant.deliveries, grant.decided_at);
+}
+
+void GroundAgent::note_grant(const coalition::Round& round, const std::vector<Delivery>& deliveries,
+                             Instant decided_at) {
+  for (const Delivery& delivery : deliveries) {
+    const Granted now{round, delivery.assignment, delivery.bearing_rad, decided_at};
+    const auto [known, first] = granted_.try_emplace(delivery.assignment.task, now);
+    const bool is_older = decided_at < known->second.granted_at;
+    const bool is_same = decided_at == known->second.granted_at && round == known->second.round;
+    if (!first && !is_older && !is_same) known->second = now;
+  }
 }
 
 const ScriptedDecision* GroundAgent::script_for(SiteId site) const {

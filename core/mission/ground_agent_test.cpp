@@ -463,6 +463,31 @@ TEST(GroundAgent, WhoWatchesGrantsASuccessorsPlanOnceItHasTheCommand) {
   })) << "the operator, and the audit";
 }
 
+/// It has not heard what was asked, nor the vehicle since: the delivery may have been flown.
+TEST(GroundAgent, WhatAnotherStationHasGrantedUnheardIsGrantedToNobodyElse) {
+  for (const bool watches : {false, true}) {
+    Bench bench;
+    const auto first = request(1, 40.0, 50.0);
+    Authorisation grant{.round = first.round, .site = kSite, .granted = true, .decided_by = "Ada"};
+    grant.decided_at = at_seconds(12.0);
+    grant.deliveries = first.deliveries;
+    if (watches) {
+      bench.agent.overhear(Message{grant}, at_seconds(12.0));
+    } else {
+      bench.agent.note_grant(grant);
+    }
+    auto relieved = passed_on(request(1, 80.0, 90.0));
+    relieved.deliveries[0].assignment.vehicle = {3};
+    bench.ask(relieved, 60.0);
+    EXPECT_TRUE(bench.agent.authorisations().empty());
+    const auto told = bench.sent<coalition::Message>();
+    EXPECT_TRUE(std::ranges::any_of(told, [](const coalition::Message& message) {
+      const auto* status = std::get_if<coalition::MemberStatus>(&message);
+      return status != nullptr && status->tasks[0].state == coalition::TaskState::unknown;
+    }));
+  }
+}
+
 TEST(GroundAgent, AGrantIsOfTheDeliveriesThatTheOperatorHasSigned) {
   bool may_sign = false;
   GroundAgentConfig config;

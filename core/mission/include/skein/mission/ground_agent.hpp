@@ -126,6 +126,8 @@ class GroundAgent {
   [[nodiscard]] const Fleet& fleet() const { return fleet_; }
   [[nodiscard]] Fleet& fleet() { return fleet_; }
   [[nodiscard]] const std::vector<PendingAuthorisation>& authorisations() const { return pending_; }
+  /// By another ground station, perhaps of what was never asked for here: it may be flown.
+  void note_grant(const Authorisation& grant);
   /// At the same site.
   [[nodiscard]] bool has_granted_since(const Authorisation& refusal) const;
 
@@ -156,6 +158,8 @@ class GroundAgent {
   void hear(const Message& message, Instant now);
   void recall_own(const Message& message, Instant at);
   void take(PendingAuthorisation& pending, const Authorisation& decision);
+  void note_grant(const coalition::Round& round, const std::vector<Delivery>& deliveries,
+                  Instant decided_at);
   void on_request(const AuthorisationRequest& request, Instant now);
   void on_event(const MissionEvent& event);
   void on_status(const coalition::MemberStatus& status);
