@@ -85,17 +85,17 @@ class VehicleAgent::Impl {
   void respond(const Failsafe::Response& response, Instant now);
 
   Ownship ownship_;
-  Failsafe failsafe_;
   Scout scout_{ownship_, outbox};
   Leader leader_{ownship_, outbox};
   TaskFlyer flyer_{ownship_, outbox};
-  RouteFlyer routes_{ownship_, outbox};
   RelayOrbit relay_{ownship_};
   SeparationWatch separation_;
   TrafficWatch traffic_;
   CommandFilter commands_;
-  std::optional<Instant> hears_below_at_;      ///< those that it is to come down through
-  std::optional<Instant> may_land_at_;         ///< where the air below is free
+  std::optional<Instant> hears_below_at_;  ///< those that it is to come down through
+  std::optional<Instant> may_land_at_;     ///< where the air below is free
+  Failsafe failsafe_;
+  RouteFlyer routes_{ownship_, outbox};
   std::uint32_t return_plan_ = 0;              ///< the newest that it flies
   bool lands_ = false;                         ///< by order, once it is at home
   bool was_landing_ = false;                   ///< with the last state
