@@ -57,7 +57,7 @@ void GroundAgent::recall(const Message& message, VehicleId sender, Instant at) {
 
 void GroundAgent::recall_own(const Message& message, Instant at) {
   if (const auto* decision = std::get_if<Authorisation>(&message)) {
-    if (decision->granted) note_grant(*decision);
+    note_grant(*decision);
     for (PendingAuthorisation& pending : pending_) {
       const bool of_it =
           pending.request.site == decision->site && pending.request.round == decision->round;
@@ -111,6 +111,8 @@ void GroundAgent::hear(const Message& message, Instant now) {
     on_request(*request, now);
   } else if (const auto* event = std::get_if<MissionEvent>(&message)) {
     on_event(*event);
+  } else if (const auto* decision = std::get_if<Authorisation>(&message)) {
+    note_grant(*decision);
   } else if (const auto* said = std::get_if<coalition::Message>(&message)) {
     if (const auto* status = std::get_if<coalition::MemberStatus>(said)) on_status(*status);
     if (const auto* renewal = std::get_if<coalition::LeaseRenewal>(said)) on_renewal(*renewal, now);
@@ -509,8 +511,9 @@ void GroundAgent::take(PendingAuthorisation& pending, const Authorisation& decis
   pending.decision = decision;
 }
 
+/// By another ground station, perhaps of what was never asked for here: it may be flown.
 void GroundAgent::note_grant(const Authorisation& grant) {
-  note_grant(grant.round, grant.deliveries, grant.decided_at);
+  if (grant.granted) note_grant(grant.round, grant.deliveries, grant.decided_at);
 }
 
 void GroundAgent::note_grant(const coalition::Round& round, const std::vector<Delivery>& deliveries,

@@ -474,7 +474,7 @@ TEST(GroundAgent, WhatAnotherStationHasGrantedUnheardIsGrantedToNobodyElse) {
     if (watches) {
       bench.agent.overhear(Message{grant}, at_seconds(12.0));
     } else {
-      bench.agent.note_grant(grant);
+      bench.agent.on_message(Message{grant}, at_seconds(12.0));
     }
     auto relieved = passed_on(request(1, 80.0, 90.0));
     relieved.deliveries[0].assignment.vehicle = {3};

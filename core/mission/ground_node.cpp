@@ -102,9 +102,6 @@ bool GroundNode::on_message(const Message& message, VehicleId sender, Instant no
     take_in(message, sender, now);
     return true;
   }
-  if (sender == kGroundStation && decision != nullptr && decision->granted) {
-    agent_.note_grant(*decision);
-  }
   if (const auto* setup = std::get_if<Setup>(&message)) on_setup(*setup, now);
   const auto* telemetry = std::get_if<Telemetry>(&message);
   if (telemetry != nullptr) {

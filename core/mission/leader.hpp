@@ -71,6 +71,7 @@ class Leader {
   /// Nobody owns a task of its site, and its last rounds found nobody for any: it may do better
   /// elsewhere meanwhile.
   [[nodiscard]] bool in_vain() const;
+  /// Gives the site up for now: it is to be led later.
   [[nodiscard]] std::optional<PutOffSite> put_off(coalition::Reason why, Instant now);
   /// For one that cannot go on: gives the site up as soon as nobody flies what it awarded. Then its
   /// silence tells the others to take the site up.

@@ -126,8 +126,6 @@ class GroundAgent {
   [[nodiscard]] const Fleet& fleet() const { return fleet_; }
   [[nodiscard]] Fleet& fleet() { return fleet_; }
   [[nodiscard]] const std::vector<PendingAuthorisation>& authorisations() const { return pending_; }
-  /// By another ground station, perhaps of what was never asked for here: it may be flown.
-  void note_grant(const Authorisation& grant);
   /// At the same site.
   [[nodiscard]] bool has_granted_since(const Authorisation& refusal) const;
 
@@ -158,6 +156,7 @@ class GroundAgent {
   void hear(const Message& message, Instant now);
   void recall_own(const Message& message, Instant at);
   void take(PendingAuthorisation& pending, const Authorisation& decision);
+  void note_grant(const Authorisation& grant);
   void note_grant(const coalition::Round& round, const std::vector<Delivery>& deliveries,
                   Instant decided_at);
   void on_request(const AuthorisationRequest& request, Instant now);
