@@ -213,12 +213,13 @@ TEST(LandingByItself, TheOperatorsWordStands) {
 TEST(LandingByItself, IsNotBrokenOffToComeHome) {
   Lander vehicle{short_of_range(Recovery::home)};
   fly_to_its_end(vehicle);
-  for (const auto kind : {CommandKind::return_home, CommandKind::resume, CommandKind::land}) {
+  for (const auto kind : {CommandKind::return_home, CommandKind::resume, CommandKind::land,
+                          CommandKind::return_home}) {
     vehicle.order(kind);
     vehicle.fly(5.0);
     EXPECT_TRUE(vehicle.plan.lands) << to_string(kind);
   }
-  EXPECT_EQ(count_trouble(vehicle.events, event::Trouble::lands_by_itself), 3) << "it is told why";
+  EXPECT_EQ(count_trouble(vehicle.events, event::Trouble::lands_by_itself), 4) << "it is told why";
   vehicle.order(CommandKind::hold);
   vehicle.fly(5.0);
   EXPECT_FALSE(vehicle.plan.lands) << "somebody may stand there";

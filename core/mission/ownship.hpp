@@ -92,11 +92,11 @@ class Ownship {
   /// From its orbit it comes down, at home or in whichever direction from here is open. False, and
   /// nothing changed, where a hazard bars that.
   bool land(Instant now);
-  /// Comes down, or has.
   /// The height at which an approach to land begins, and up to which a copter is beside its place.
   [[nodiscard]] double approach_m() const {
     return ground_m_.value_or(0.0) + spec().landing.approach_height_m;
   }
+  /// Comes down, or has.
   [[nodiscard]] bool landing() const { return descent_.has_value() || flight_.landing(); }
   /// Leaves its own way home for that one, where it is one that it can fly. Else false.
   bool return_along(const TimedPath& way, Instant now);

@@ -40,9 +40,9 @@ void VehicleAgent::Impl::obey(CommandKind order, Instant now) {
   // It stands on the ground: nothing is flown before it is in the air again.
   if (ownship_.landing() && ownship_.state().on_ground()) return;
   // It has no range to climb again for, and comes home by what it does.
-  const bool by_itself = ownship_.landing() && !lands_;
+  const bool to_the_end = ownship_.landing() && failsafe_.facts().range_spent;
   const bool goes_on =
-      by_itself && (order == CommandKind::return_home || order == CommandKind::resume);
+      to_the_end && (order == CommandKind::return_home || order == CommandKind::resume);
   lands_ = order == CommandKind::land;
   told_barred_ = false;
   const auto* response = failsafe_.update(now, {.order = order});
