@@ -40,6 +40,11 @@ void Elector::leave() {
   strayed_ = false;
 }
 
+void Elector::cancelled() {
+  if (!elector_ || strayed_) return;
+  messages_.push(Allegiance{plan_->round.coalition, self_, instance_, kNobody, renewed_at_});
+}
+
 void Elector::on_lease_renewal(const LeaseRenewal& message, Instant now) {
   const CoalitionId& coalition = message.round.coalition;
   if (coalition.leader == self_) return;  // it follows itself, and its initiator knows

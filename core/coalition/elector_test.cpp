@@ -122,6 +122,25 @@ TEST(Elector, WhoHasLeftItsCoalitionDoesNotLeadIt) {
   EXPECT_FALSE(c.elector.poll_won());
 }
 
+/// Not so who has followed another: to be counted no more could give the lost leader a majority.
+TEST(Elector, SaysThatItFollowsNobodyWhenItIsCancelled) {
+  Follower follower;
+  (void)follower.elector.poll_message();  // to follow its leader
+  follower.elector.cancelled();
+  const auto said = follower.elector.poll_message();
+  ASSERT_TRUE(said);
+  const auto& left = std::get<Allegiance>(*said);
+  EXPECT_EQ(left.coalition, kCoalition);
+  EXPECT_EQ(left.follows, VehicleId{});
+  EXPECT_EQ(left.acknowledges, follower.now);
+
+  Claimant strayed;
+  while (strayed.elector.poll_message()) {
+  }
+  strayed.elector.cancelled();
+  EXPECT_FALSE(strayed.elector.poll_message());
+}
+
 TEST(Elector, NobodyAnswersAClaimThatIsStillToCome) {
   Claimant c;
   c.is_followed(c.now + 24h);

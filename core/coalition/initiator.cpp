@@ -248,16 +248,27 @@ void Initiator::on_allegiance(const Allegiance& message, Instant now) {
     ++bad_messages_;
     return;
   }
-  auto& [acknowledged, instance, awarded_at] = elector->second;
   // One that has started anew does not know what it had promised to whom.
-  if (instance != message.instance) return;
-  if (message.follows == VehicleId{}) {
-    // Said before its newest award, and perhaps by an earlier start: by that award it has a vote.
-    if (message.acknowledges > awarded_at) electors_.erase(elector);
+  if (elector->second.instance != message.instance) return;
+  if (elector->second.leaves_by(message)) {
+    electors_.erase(elector);
   } else if (message.follows == message.coalition.leader) {
     heard_[message.elector] = now;
+    Instant& acknowledged = elector->second.acknowledged;
     acknowledged = std::max(acknowledged, message.acknowledges);
   }
+}
+
+/// Said before its newest award, and perhaps by an earlier start: by that award it has a vote.
+bool Initiator::ElectorEntry::leaves_by(const Allegiance& message) const {
+  return message.follows == VehicleId{} && message.instance == instance &&
+         message.acknowledges > awarded_at;
+}
+
+void Initiator::Electorate::on_allegiance(const Allegiance& message, Instant now) {
+  if (message.coalition != coalition || message.acknowledges > now) return;
+  const auto other = others.find(message.elector);
+  if (other != others.end() && other->second.leaves_by(message)) others.erase(other);
 }
 
 void Initiator::on_rival(const Round& rival, bool rival_stands, Instant now) {
@@ -297,10 +308,10 @@ Instant Initiator::starts_anew_at() const {
 /// electors.
 Initiator::Electorate Initiator::electorate() const {
   const bool settled = promised_until_ == Instant::max();
-  Electorate all{{}, settled ? electors_.size() / 2 + 1 : 1, authority_until(), starts_anew_at()};
-  for (const auto& [vehicle, elector] : electors_) {
-    if (vehicle != announcement_.round.coalition.leader) all.others.push_back(vehicle);
-  }
+  const CoalitionId& coalition = announcement_.round.coalition;
+  Electorate all{coalition, electors_, settled ? electors_.size() / 2 + 1 : 1, authority_until(),
+                 starts_anew_at()};
+  all.others.erase(coalition.leader);
   return all;
 }
 

@@ -78,7 +78,11 @@ void Participant::bid(const Announcement& announcement, Bid bid, Instant now) {
   bid_ = bid;
   award_.reset();
   confirmation_.reset();
-  bidding_until_ = std::max(announcement.formed_at, now) + params_.formation_time();
+  // Its leader may have learned that the air is slower than is known here.
+  const Instant formed_at = announcement.formed_at;
+  const Duration takes =
+      formed_at - std::clamp(announcement.announced_at, formed_at - params_.lease, formed_at);
+  bidding_until_ = std::max(formed_at, now) + std::max(takes, params_.formation_time());
   messages_.push(bid);
 }
 
@@ -155,11 +159,21 @@ void Participant::on_cancel(const Cancel& message, Instant now) {
   for (const auto& lease : leases_) {
     if (is_led_again || lease.state == TaskState::started) give_up(lease, now);
   }
+  elector_.cancelled();
   leave(Event::released, message.why);
 }
 
 void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
   elector_.on_lease_renewal(message, now);
+  const bool is_followed =
+      contains(message.members, self_) && message.round.coalition == round_.coalition &&
+      message.round.number >= round_.number && !(award_ && message.sent_at <= award_->awarded_at);
+  // A delivery that an earlier leader took for flown, perhaps, this one may have flown yet.
+  const auto is_known_anew = [&message](const Over& over) {
+    return over.since == Instant::min() && over.task.site == message.site &&
+           !contains(message.unknown, over.task);
+  };
+  if (is_followed) std::erase_if(over_, is_known_anew);
   for (const auto& task : message.done) note_over({task, now, false});
   for (const auto& task : message.unknown) note_over({task, Instant::min(), false});
   for (auto& f : finished_) {
@@ -167,14 +181,7 @@ void Participant::on_lease_renewal(const LeaseRenewal& message, Instant now) {
         f.entry.state == TaskState::done || f.round.coalition == message.round.coalition;
     if (concerned && contains(message.done, f.entry.task)) f.report_until = now;
   }
-  if (!contains(message.members, self_)) return;
-  if (message.round.coalition != round_.coalition || message.round.number < round_.number) return;
-  if (award_ && message.sent_at <= award_->awarded_at) return;
-  // A delivery that an earlier leader took for flown, perhaps, this one may have flown yet.
-  std::erase_if(over_, [&message](const Over& over) {
-    return over.since == Instant::min() && over.task.site == message.site &&
-           !contains(message.unknown, over.task);
-  });
+  if (!is_followed) return;
   // Renewals were lost, and the leader still counts on the plan that is held for a successor.
   const bool heard_again = machine_.in(State::orphaned) && message.round == round_ &&
                            message.lease_until > now && elector_.follows_leader();

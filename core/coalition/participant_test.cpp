@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 #include <variant>
 
@@ -109,6 +110,31 @@ TEST(Participant, WhatAnotherLeaderTakesForFlownPerhapsIsNotOverWhereItsOwnDoesN
   own.site = kTask.site;
   m.self.on_lease_renewal(own, m.now + 2s);
   EXPECT_FALSE(m.self.over(delivery));
+
+  m.self.on_lease_renewal(other, m.now + 3s);
+  own = m.renewal(1, m.now + 4s);
+  own.site = kTask.site;
+  own.done = {delivery};
+  m.self.on_lease_renewal(own, m.now + 4s);
+  ASSERT_TRUE(m.self.over(delivery)) << "it has been flown meanwhile";
+  EXPECT_EQ(m.self.over(delivery)->since, m.now + 4s);
+}
+
+/// In slow air its leader gives a round longer than it would itself.
+TEST(Participant, WaitsForItsAwardAsLongAsItsLeaderTakesForARound) {
+  for (const Duration takes : {Duration{1400ms}, Duration{3s}, Duration{9min}}) {
+    Member m;
+    m.is_called(1);
+    m.call.round.number = 2;
+    m.call.formed_at = m.now + takes;
+    m.self.on_announcement(m.call, m.now);
+    m.bids();
+    const Instant until = m.call.formed_at + std::min(takes, m.params.lease);
+    m.self.on_timeout(until - kTick);
+    EXPECT_EQ(m.self.state(), Participant::State::bidding);
+    m.self.on_timeout(until);
+    EXPECT_EQ(m.self.state(), Participant::State::free);
+  }
 }
 
 /// So it knows soon that nobody holds what it awarded.

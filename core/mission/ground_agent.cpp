@@ -474,9 +474,15 @@ Result<TakenBack> GroundAgent::take_back(SiteId site, const std::string& by, Ins
 std::optional<std::string> GroundAgent::why_not_grant(const AuthorisationRequest& request,
                                                       Instant now) {
   if (const Granted* const other = granted_to_another(request)) {
+    // What was never asked for here cannot be taken back here.
+    const bool was_asked = std::ranges::any_of(pending_, [&](const PendingAuthorisation& pending) {
+      return pending.request.site == request.site && pending.request.round == other->round;
+    });
     return to_string(other->assignment.task) + " is granted to " +
-           name_of(other->assignment.vehicle) + " in another coalition already; refuse " +
-           name_of(request.site) + " to take that back, or wait until its time has passed";
+           name_of(other->assignment.vehicle) + " in another coalition already; " +
+           (was_asked ? "refuse " + name_of(request.site) + " to take that back"
+                      : "withdraw " + name_of(request.site)) +
+           ", or wait until its time has passed";
   }
   if (tell_what_is_over(request, now)) {
     return "a delivery of this plan is over by now; its leader will ask again";
@@ -507,23 +513,27 @@ void GroundAgent::take(PendingAuthorisation& pending, const Authorisation& decis
     led_[request.site].announcement.reset();
     std::erase_if(granted_, [&](const auto& g) { return g.first.site == request.site; });
   }
-  if (decision.granted) note_grant(request.round, request.deliveries, decision.decided_at);
+  for (const Delivery& delivery : request.deliveries) {
+    if (!decision.granted) break;
+    granted_.insert_or_assign(
+        delivery.assignment.task,
+        Granted{request.round, delivery.assignment, delivery.bearing_rad, decision.decided_at});
+  }
   pending.decision = decision;
 }
 
-/// By another ground station, perhaps of what was never asked for here: it may be flown.
+/// By another ground station, perhaps of what was never asked for here: it may be flown. It is said
+/// again and again, also in the rounds of successors, all of one time: what is known of it stays.
 void GroundAgent::note_grant(const Authorisation& grant) {
-  if (grant.granted) note_grant(grant.round, grant.deliveries, grant.decided_at);
-}
-
-void GroundAgent::note_grant(const coalition::Round& round, const std::vector<Delivery>& deliveries,
-                             Instant decided_at) {
-  for (const Delivery& delivery : deliveries) {
-    const Granted now{round, delivery.assignment, delivery.bearing_rad, decided_at};
-    const auto [known, first] = granted_.try_emplace(delivery.assignment.task, now);
-    const bool is_older = decided_at < known->second.granted_at;
-    const bool is_same = decided_at == known->second.granted_at && round == known->second.round;
-    if (!first && !is_older && !is_same) known->second = now;
+  if (!grant.granted) return;
+  for (const Delivery& delivery : grant.deliveries) {
+    const auto known = granted_.find(delivery.assignment.task);
+    const bool is_news = known == granted_.end() ? granted_.size() < kTasksRememberedMax
+                                                 : grant.decided_at > known->second.granted_at;
+    if (!is_news) continue;
+    granted_.insert_or_assign(
+        delivery.assignment.task,
+        Granted{grant.round, delivery.assignment, delivery.bearing_rad, grant.decided_at});
   }
 }
 

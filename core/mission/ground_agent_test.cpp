@@ -488,6 +488,37 @@ TEST(GroundAgent, WhatAnotherStationHasGrantedUnheardIsGrantedToNobodyElse) {
   }
 }
 
+/// The grant is said again every half second, of its own round and of a successor's, and is all of
+/// one time: what the vehicle has said of it since stays known.
+TEST(GroundAgent, AGrantThatIsHeardAgainIsNoNewGrant) {
+  Bench bench;
+  const auto first = request(1, 40.0, 90.0);
+  Authorisation grant{.round = first.round, .site = kSite, .granted = true, .decided_by = "Ada"};
+  grant.decided_at = at_seconds(12.0);
+  grant.deliveries = first.deliveries;
+  Authorisation succeeding = grant;
+  succeeding.round = passed_on(first).round;
+  const auto say_again = [&](double at_s) {
+    bench.agent.overhear(Message{grant}, at_seconds(at_s));
+    bench.agent.overhear(Message{succeeding}, at_seconds(at_s));
+  };
+  const auto says = [&](const EventBody& body, double at_s) {
+    const Delivery& delivery = first.deliveries[0];
+    bench.agent.on_message(Message{MissionEvent{delivery.assignment.vehicle, at_seconds(at_s),
+                                                first.round, delivery.assignment.task, body}},
+                           at_seconds(at_s));
+  };
+  say_again(12.0);
+  says(event::TaskStarted{}, 20.0);
+  say_again(21.0);
+  says(event::TaskFailed{}, 22.0);
+  auto relieved = request(1, 80.0, 95.0);
+  relieved.round.coalition.leader = {3};
+  relieved.deliveries[0].assignment.vehicle = {3};
+  bench.ask(relieved, 60.0);
+  EXPECT_TRUE(bench.agent.authorisations().empty()) << "it may be flown to its end";
+}
+
 TEST(GroundAgent, AGrantIsOfTheDeliveriesThatTheOperatorHasSigned) {
   bool may_sign = false;
   GroundAgentConfig config;

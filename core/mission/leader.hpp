@@ -10,7 +10,7 @@
 
 #include "outbox.hpp"
 #include "ownship.hpp"
-#include "site_book.hpp"
+#include "site_to_lead.hpp"
 #include "skein/base/state_table.hpp"
 #include "skein/coalition/initiator.hpp"
 #include "skein/coalition/participant.hpp"

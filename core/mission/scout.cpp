@@ -87,6 +87,8 @@ void Scout::on_message(const coalition::Message& message, Instant now) {
   } else if (const auto* status = std::get_if<coalition::MemberStatus>(&message)) {
     sites_.on_status(*status);
     on_status(*status);
+  } else if (const auto* allegiance = std::get_if<coalition::Allegiance>(&message)) {
+    for (Surveyed& s : surveyed_) s.put_off.electorate.on_allegiance(*allegiance, now);
   }
 }
 
@@ -108,7 +110,7 @@ void Scout::on_status(const coalition::MemberStatus& status) {
         outstanding, [&status](const auto& held) { return held.owner == status.member; });
     const bool in_time = std::ranges::all_of(
         status.tasks, [&](const auto& task) { return task.time < electorate.promised_until; });
-    if (!holds_more && in_time) std::erase(electorate.others, status.member);
+    if (!holds_more && in_time) electorate.others.erase(status.member);
   }
 }
 

@@ -416,27 +416,32 @@ TEST(Scout, ASiteThatWasPutOffIsLedWhenNobodyHoldsItsTasksAnyMore) {
 }
 
 /// Two of three who have not heard that their leader was held may have chosen another one, unless
-/// one of them has left before they could.
+/// one of them has left before they could, or says that it will not.
 TEST(Scout, ASiteThatWasPutOffIsLedWhenNobodyCanHaveBeenChosenToLeadIt) {
   const coalition::Round round{{{4}, {1}, 1}, 1};
   const TaskId first{SiteId{1}, TaskKind::deliver, 0};
   const TaskId second{SiteId{1}, TaskKind::deliver, 1};
   using namespace std::chrono_literals;
-  for (const Duration left_after : {0s, 12s, 100s}) {
+  for (const auto& [left_after, says_so] :
+       {std::pair<Duration, bool>{0s, false}, {12s, false}, {100s, false}, {12s, true}}) {
     Scouting s;
     const Instant promised = s.now + 10s;
     const Instant leases_end = s.now + 14s;
     const Instant until = promised + 60s;
-    s.scout.put_off({test_site(1),
-                     {{first, VehicleId{7}, round, leases_end, false},
-                      {second, VehicleId{8}, round, leases_end, false}},
-                     {{VehicleId{7}, VehicleId{8}}, 2, promised, until}});
-    if (left_after < 100s) {
+    s.scout.put_off(
+        {test_site(1),
+         {{first, VehicleId{7}, round, leases_end, false},
+          {second, VehicleId{8}, round, leases_end, false}},
+         {round.coalition, {{VehicleId{7}, {}}, {VehicleId{8}, {}}}, 2, promised, until}});
+    if (says_so) {
+      const coalition::Allegiance none{round.coalition, VehicleId{8}, {}, {}, s.now};
+      s.scout.on_message(coalition::Message{none}, s.now + left_after);
+    } else if (left_after < 100s) {
       coalition::MemberStatus status{round, VehicleId{8}, {}};
       status.tasks = {{second, coalition::TaskState::failed, s.now + left_after}};
       s.scout.on_message(coalition::Message{status}, s.now + left_after);
     }
-    const Instant led_at = left_after == 0s ? leases_end : until;
+    const Instant led_at = left_after == 0s || says_so ? leases_end : until;
     EXPECT_FALSE(s.scout.take_up(led_at - 1ms));
     EXPECT_TRUE(s.scout.take_up(led_at));
   }

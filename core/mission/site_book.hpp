@@ -6,23 +6,9 @@
 #include <set>
 #include <vector>
 
-#include "skein/coalition/initiator.hpp"
 #include "skein/coalition/messages.hpp"
 
 namespace skein::mission {
-
-/// A surveyed site that needs a leader.
-struct SurveyedSite {
-  Site site;
-  std::vector<TaskId> over;  ///< its tasks that need nobody, as far as is known here
-};
-
-/// That was led here, and shall be led later.
-struct PutOffSite {
-  Site site;
-  std::vector<coalition::Initiator::Outstanding> outstanding;
-  coalition::Initiator::Electorate electorate;
-};
 
 /// What a vehicle has heard of the sites that others lead, so that a site whose leader is lost is
 /// not forgotten: whoever is free flies there, and leads it if it is still silent there.

@@ -64,6 +64,14 @@ export default [
     to: 'electorate.may_choose() ? Instant{} : Instant::min()',
   },
   {
+    name: 'grant-said-again-is-new',
+    slip: 'a grant of another ground station that is said again wipes what its vehicle has said of it since',
+    promise: 'no delivery is flown twice: what was begun may be flown to its end',
+    file: 'core/mission/ground_agent.cpp',
+    from: ': grant.decided_at > known->second.granted_at;',
+    to: ': grant.decided_at >= known->second.granted_at;',
+  },
+  {
     name: 'load-used-twice',
     slip: 'what a delivery takes off the loads is not counted',
     promise: 'no vehicle delivers more than it carries',

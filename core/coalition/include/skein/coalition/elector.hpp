@@ -41,6 +41,8 @@ class Elector {
   void accepted(const Award& award);
   /// The member has nothing to do in its coalition any more.
   void leave();
+  /// So by its leader's word, who may wait to lead again until nobody can choose another (Scout).
+  void cancelled();
   /// May this vehicle lead now? Otherwise it follows only.
   void set_may_lead(bool may_lead) {
     may_lead_ = may_lead;

@@ -155,14 +155,24 @@ class Initiator {
     bool maybe_flown = false;  ///< by then
   };
   [[nodiscard]] std::vector<Outstanding> outstanding() const;
+  struct ElectorEntry {
+    Instant acknowledged{Instant::min()};  ///< the stamp of the newest heartbeat that it answered
+    InstanceId instance;                   ///< the one that was chosen: no other counts
+    Instant awarded_at{Instant::min()};    ///< the newest award that it is part of
+
+    /// It says that it follows nobody in the coalition any more; not before its newest award.
+    [[nodiscard]] bool leaves_by(const Allegiance& message) const;
+  };
   /// Who may choose another leader after this one has gone, and not have heard that it has.
   struct Electorate {
-    std::vector<VehicleId> others;  ///< than this leader
-    std::size_t majority = 0;       ///< as many of them as choose one
-    Instant promised_until{};       ///< so long too few of them can
-    Instant until{};                ///< none of them can be at work under another any more
+    CoalitionId coalition;
+    std::map<VehicleId, ElectorEntry> others;  ///< than this leader
+    std::size_t majority = 0;                  ///< as many of them as choose one
+    Instant promised_until{};                  ///< so long too few of them can
+    Instant until{};  ///< none of them can be at work under another any more
 
     [[nodiscard]] bool may_choose() const { return majority > 0 && others.size() >= majority; }
+    void on_allegiance(const Allegiance& message, Instant now);
   };
   [[nodiscard]] Electorate electorate() const;
   /// The tasks that others still own in this round, with their times.
@@ -185,11 +195,6 @@ class Initiator {
     TaskState reported = TaskState::planned;
     Instant lease_until{};  ///< the latest that the owner may believe in
     Instant done_at{};
-  };
-  struct ElectorEntry {
-    Instant acknowledged{Instant::min()};  ///< the stamp of the newest heartbeat that it answered
-    InstanceId instance;                   ///< the one that was chosen: no other counts
-    Instant awarded_at{Instant::min()};    ///< the newest award that it is part of
   };
   void make_ledger(const std::vector<TaskId>& done);
   [[nodiscard]] bool may_be_flown(const Entry& entry) const;

@@ -157,8 +157,6 @@ class GroundAgent {
   void recall_own(const Message& message, Instant at);
   void take(PendingAuthorisation& pending, const Authorisation& decision);
   void note_grant(const Authorisation& grant);
-  void note_grant(const coalition::Round& round, const std::vector<Delivery>& deliveries,
-                  Instant decided_at);
   void on_request(const AuthorisationRequest& request, Instant now);
   void on_event(const MissionEvent& event);
   void on_status(const coalition::MemberStatus& status);
