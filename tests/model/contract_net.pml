@@ -534,6 +534,15 @@ inline elector_leave(v) {
   clear_supporters(v)
 }
 
+inline elector_cancelled(v) {
+  if
+  :: elec[v] && !strayed[v] ->
+    o_k = ALLEGIANCE; o_c = pln[v] - 1; o_v = v; o_i = inst[v]; o_x = 0; o_s = ren[v]; o_e = m_e & ONLY(v);
+    reply()
+  :: else
+  fi
+}
+
 inline clear_supporters(v) {
   for (q : 0 .. V - 1) { sack[v * V + q] = NEVER; sinst[v * V + q] = 0 }
 }
@@ -798,6 +807,7 @@ inline on_cancel(v) {
     :: begun[v] -> say_failed(v)
     :: else
     fi;
+    elector_cancelled(v);
     leave(v)
   fi
 }
