@@ -135,8 +135,9 @@ class Planner {
       }
       bases_.push_back(base_routes(problem_, v, params_.corridors));
       if (bases_.back().empty()) {
-        return Error{name(v) +
-                     " has no route to the site that its turns, waypoints and range allow"};
+        return Error{
+            name(v) +
+            " has no route to the site that its turns, waypoints, range and the hazards allow"};
       }
       const double offset = v.arrival_offset_s;
       latest_offset_s_ = std::max(latest_offset_s_, offset);

@@ -302,8 +302,12 @@ void add_tours(CLI::App& app, int& status) {
   command->add_option("--radius", arguments->radius_m, "Least turn radius, m")
       ->required()
       ->check(CLI::Range(1e-6, 1e6));
-  command->add_option("--steps", arguments->steps, "Of the search")->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Of the search")->capture_default_str();
+  command->add_option("--steps", arguments->steps, "Of the search")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000'000));
+  command->add_option("--seed", arguments->seed, "Of the search")
+      ->capture_default_str()
+      ->check(why_no_seed);
   command->add_option("--plots", arguments->plots, "Folder for a picture of each, as SVG")
       ->check(CLI::ExistingDirectory);
   command->footer(
@@ -323,10 +327,14 @@ void add_orienteering(CLI::App& app, int& status) {
       ->required()
       ->check(CLI::ExistingFile);
   command->add_option("--nodes", arguments->nodes, "Of the search for a proof")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000'000));
   command->add_option("--steps", arguments->steps, "Of ruin and recreate, where that proves none")
-      ->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Of ruin and recreate")->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1'000'000'000));
+  command->add_option("--seed", arguments->seed, "Of ruin and recreate")
+      ->capture_default_str()
+      ->check(why_no_seed);
   command->footer(
       "Prints a row of CSV for each file: the score, and what no team can get more than. All "
       "begin\n"

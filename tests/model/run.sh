@@ -41,6 +41,8 @@ readonly mutants=(
   "GATE_WITHOUT_GRANT gate" "GATE_WITHOUT_LEASE gate" "LATE_COPY_GRANTS gate"
 )
 
+usage() { sed -n '3,6s/^# \?//p' "${BASH_SOURCE[0]}"; }
+
 # search FOLDER DEFINITION...: its result is in FOLDER/out
 search() {
   local at=$work/$1
@@ -91,7 +93,9 @@ find_mutants() {
 
 # replay_traces PROGRAMS SCENARIO FAULTS MISSIONS
 replay_traces() {
+  (($# == 4)) || { usage >&2 && exit 2; }
   local programs=$1 scenario=$2 faults=$3 missions=$4 first step=5 failed=0
+  [[ -x $programs/mission_traces ]] || { echo "model: there is no $programs/mission_traces; ./dev build makes it" >&2 && exit 2; }
   cp "$here"/*.pml "$work"
   (cd "$work" && spin -a replay.pml && cc -O1 -w -DSAFETY -DNOREDUCE -DVECTORSZ=16000 -o pan pan.c)
   for ((first = 1; first <= missions; first += step)); do
@@ -100,7 +104,8 @@ replay_traces() {
   done
   grep '^rejected' "$work/replayed" || true
   awk '/traces of/ { a += $1; rows += $4; r += $7 }
-       END { printf "model: %d traces of %d rows accepted, %d rejected\n", a, rows, r }' "$work/replayed"
+       END { printf "model: %d traces of %d rows accepted, %d rejected\n", a, rows, r; exit !(a + r) }' "$work/replayed" ||
+    { echo "model: nothing was replayed" >&2 && return 1; }
 
   # Each of these must be rejected, or nothing is shown: of the first mission that has all of it.
   local what
@@ -126,5 +131,6 @@ case ${1:-} in
   verify) shift && verify "$@" ;;
   mutants) find_mutants ;;
   traces) shift && replay_traces "$@" ;;
-  *) sed -n '3,6s/^# \?//p' "${BASH_SOURCE[0]}" && exit 2 ;;
+  -h | --help) usage ;;
+  *) usage >&2 && exit 2 ;;
 esac
