@@ -131,7 +131,9 @@ std::string page_of() {
 constexpr std::string_view kRules =
     "Directions are compass degrees: from north, clockwise. Positions are metres east and north of "
     "`origin`. The unit is in the key. An unknown key is an error, as is a missing required one; "
-    "every message says the file, the line, the key, what is wrong and what to do.\n";
+    "a message about a key says the file, the line, the key, what is wrong and what to do; one "
+    "about "
+    "what keys say together (a site inside a hazard) names what it is about.\n";
 
 }  // namespace
 
